@@ -1,0 +1,67 @@
+#include "drivers/camera.h"
+
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "drivers/error.h"
+
+namespace lumitexel {
+namespace {
+
+constexpr std::array<std::pair<Mosaic, const char*>, 5> kMosaicNames{{{Mosaic::Mono, "mono"},
+                                                                      {Mosaic::Rggb, "rggb"},
+                                                                      {Mosaic::Bggr, "bggr"},
+                                                                      {Mosaic::Grbg, "grbg"},
+                                                                      {Mosaic::Gbrg, "gbrg"}}};
+
+}  // namespace
+
+const char* to_string(Mosaic mosaic) {
+  for (const auto& [value, name] : kMosaicNames) {
+    if (value == mosaic) return name;
+  }
+  return "unknown";
+}
+
+Mosaic mosaic_from_string(const std::string& name) {
+  for (const auto& [value, known] : kMosaicNames) {
+    if (name == known) return value;
+  }
+  throw BadInput("mosaic", "'" + name + "'", "mono, rggb, bggr, grbg or gbrg");
+}
+
+CameraSettings Camera::quantised(const CameraSettings& wanted) const {
+  const CameraLimits limit = limits();
+  // Written so that NaN fails the check as well.
+  if (!(wanted.exposure_s >= limit.exposure_min_s && wanted.exposure_s <= limit.exposure_max_s)) {
+    std::ostringstream text;
+    text << name() << ": exposure " << wanted.exposure_s << " s asked for, the camera takes "
+         << limit.exposure_min_s << " to " << limit.exposure_max_s << " s";
+    throw OutOfRange(text.str());
+  }
+  CameraSettings settings = wanted;
+  if (limit.exposure_step_s > 0.0) {
+    settings.exposure_s = std::round(wanted.exposure_s / limit.exposure_step_s) * limit.exposure_step_s;
+  }
+  return settings;
+}
+
+Frame Camera::shoot(const CameraSettings& wanted, std::stop_token stop, int max_attempts) {
+  const CameraSettings settings = quantised(wanted);
+  CameraSettings last_reported;
+  for (int attempt = 0; attempt < max_attempts; ++attempt) {
+    arm(settings, stop);
+    Frame frame = trigger(stop);
+    if (frame.reported == settings) return frame;
+    last_reported = frame.reported;
+  }
+  std::ostringstream text;
+  text << name() << ": asked for exposure " << settings.exposure_s << " s, gain " << settings.gain_db
+       << " dB, but " << max_attempts << " frames in a row reported " << last_reported.exposure_s << " s, "
+       << last_reported.gain_db << " dB";
+  throw Protocol(text.str());
+}
+
+}  // namespace lumitexel

@@ -1,0 +1,14 @@
+#include "processing/calibration/calibrated_session.h"
+
+namespace lumitexel {
+
+Eigen::Vector3d Light::direction_from(const Eigen::Vector3d& x_in_world) const {
+  return type == Type::Point ? (vector_in_world - x_in_world).normalized() : vector_in_world;
+}
+
+double Light::irradiance(const Eigen::Vector3d& x_in_world, int c) const {
+  const double value = intensity[static_cast<std::size_t>(c)];
+  return type == Type::Point ? value / (vector_in_world - x_in_world).squaredNorm() : value;
+}
+
+}  // namespace lumitexel

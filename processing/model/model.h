@@ -1,0 +1,49 @@
+// What the fit leaves behind: materials, and for every texel of an atlas which material it is and how it mixes
+// that material's basis BRDFs.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "processing/brdf/lafortune.h"
+#include "processing/image/image.h"
+#include "processing/surface/mesh.h"
+
+namespace lumitexel {
+
+// How far the chain of the paper is followed when the model is evaluated.
+enum class FitStage { Single, Cluster, Projection };
+inline constexpr FitStage kFitStages[] = {FitStage::Single, FitStage::Cluster, FitStage::Projection};
+const char* to_string(FitStage stage);  // "single", "cluster", "projection"
+FitStage fit_stage_from_string(const std::string& name);  // throws BadInput
+
+struct ModelMaterial {
+  LafortuneBrdf brdf;                // of the cluster
+  std::vector<LafortuneBrdf> basis;  // what its texels mix, weights >= 0
+};
+
+struct Model {
+  static constexpr int kNoMaterial = -1;
+
+  int channels = 3;
+  LafortuneBrdf single;  // one BRDF for the whole object
+  std::vector<ModelMaterial> materials;
+  Mesh mesh;  // with texture coordinates into the atlas, in the session's world
+
+  // The atlas: all maps have this size. Texel (x, y) has its centre at u = (x + 0.5) / width, v = 1 - (y + 0.5) / height.
+  int width = 0, height = 0;
+  std::vector<std::int16_t> material;  // width * height; kNoMaterial outside the patches
+  Image weights;      // channels = largest basis; weight k of the texel's material's basis k
+  Image normal;       // 3 channels, unit, in world; zero outside
+  Image uncertainty;  // one-sigma of the texel's reflectance prediction, relative; 1 channel
+  Image samples;      // number of samples the texel was fitted to; 1 channel; 0 in filled-in texels
+
+  std::string provenance_json;  // an object: version, session hash, options, timings, every stage's error
+};
+
+// The BRDF's value f (1/sr) of one texel in channel c, with the stage's share of the model. 0 where there is no material.
+double evaluate_texel(const Model& model, FitStage stage, int x, int y, int c, const LobeGeometry& geometry);
+
+}  // namespace lumitexel

@@ -1,0 +1,17 @@
+// A model as a directory: model.json, basis.json, cluster.exr, weights_0.exr (four planes a file), normal.exr,
+// uncertainty.exr, samples.exr, mesh.ply. Any common EXR reader opens the maps.
+#pragma once
+
+#include <filesystem>
+
+#include "processing/model/model.h"
+
+namespace lumitexel {
+
+// Writes a whole new directory beside `directory` and renames it into place; an existing model is replaced.
+// Throws BadInput if `directory` exists and is not a model, Error if it cannot be written.
+void write_model(const std::filesystem::path& directory, const Model& model);
+// Throws BadInput naming the file and field if anything is missing, of the wrong shape, or not finite.
+Model read_model(const std::filesystem::path& directory);
+
+}  // namespace lumitexel

@@ -1,0 +1,68 @@
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+
+#include "drivers/error.h"
+#include "rig/console/command.h"
+#include "rig/console/console_progress.h"
+
+namespace lumitexel {
+namespace {
+
+constexpr int kFailed = 1, kBadInput = 2;
+
+// In the order in which a user meets them; the help lists them so.
+const std::vector<void (*)(CLI::App&, CommandAction&)> kCommands = {
+};
+
+std::stop_source& interrupt() {
+  static std::stop_source source;
+  return source;
+}
+
+int run(const CommandAction& action, bool json) {
+  ConsoleProgress progress;
+  CommandContext context{progress, interrupt().get_token()};
+  try {
+    const CommandResult result = action(context);
+    progress.finish();
+    if (json) {
+      std::cout << result.json.dump(2) << '\n';
+    } else {
+      std::cout << result.text;
+    }
+    return result.exit_code;
+  } catch (const BadInput& error) {
+    progress.finish();
+    std::cerr << "lumitexel: " << error.what() << '\n';
+    return kBadInput;
+  } catch (const std::exception& error) {
+    progress.finish();
+    std::cerr << "lumitexel: " << error.what() << '\n';
+    return kFailed;
+  }
+}
+
+int main_function(int argc, char** argv) {
+  CLI::App app{"Photographs an object on a rig and measures how it reflects light."};
+  app.name("lumitexel");
+  app.require_subcommand(1);
+  app.fallthrough();
+  bool json = false;
+  app.add_flag("--json", json, "Print a machine-readable result on stdout (logs stay on stderr)");
+  CommandAction action;
+  for (const auto add : kCommands) add(app, action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kBadInput;
+  }
+  std::signal(SIGINT, [](int) { interrupt().request_stop(); });
+  return run(action, json);
+}
+
+}  // namespace
+}  // namespace lumitexel
+
+int main(int argc, char** argv) { return lumitexel::main_function(argc, argv); }

@@ -1,0 +1,20 @@
+// The devices of one rig, connected: hardware, simulated or recorded alike.
+#pragma once
+
+#include <memory>
+
+#include "drivers/camera.h"
+#include "drivers/clock.h"
+#include "drivers/light.h"
+#include "drivers/motion.h"
+
+namespace lumitexel {
+
+struct RigDevices {
+  std::shared_ptr<Clock> clock;
+  std::unique_ptr<Camera> camera;
+  std::unique_ptr<Axis> turntable, light_azimuth, light_elevation;
+  std::unique_ptr<Lamp> point_light, ring_flash, backlight;
+};
+
+}  // namespace lumitexel
