@@ -1,0 +1,208 @@
+#include "processing/brdf/cluster_materials.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "processing/brdf/split_directions.h"
+
+namespace lumitexel {
+namespace {
+
+constexpr int kSplitRounds = 6;
+constexpr int kGlobalRounds = 12;
+constexpr int kFinalRounds = 3;
+constexpr double kSettled = 0.002;           // share of labels that may still move when reclustering ends
+constexpr std::size_t kFewestMembers = 20;   // a material needs as many lumitexels
+
+using Members = std::vector<std::size_t>;
+
+struct Split {
+  LafortuneBrdf first, second;
+  double gain = 0;  // of minus twice the log likelihood
+};
+
+class Clusterer {
+ public:
+  Clusterer(const Observations& observations, const ClusterOptions& options)
+      : observations_(observations), options_(options) {}
+
+  Material fit(const Members& members, const LafortuneBrdf* start) const {
+    std::vector<const Observation*> samples;
+    for (const std::size_t i : members) {
+      for (const Observation& sample : observations_.of(i)) samples.push_back(&sample);
+    }
+    const LobeFit fit = fit_one_lobe(samples, observations_.channels, start, options_.fit);
+    return {fit.brdf, fit.covariance, members.size()};
+  }
+
+  // Index of the BRDF that explains each of `lumitexels` best, and how badly it does.
+  void assign(const std::vector<LafortuneBrdf>& brdfs, const Members& lumitexels, std::vector<int>& label,
+              std::vector<double>& cost) const {
+    label.assign(lumitexels.size(), 0);
+    cost.assign(lumitexels.size(), 0.0);
+    oneapi::tbb::parallel_for(std::size_t{0}, lumitexels.size(), [&](std::size_t k) {
+      double best = std::numeric_limits<double>::infinity();
+      for (std::size_t j = 0; j < brdfs.size(); ++j) {
+        const double value = misfit(brdfs[j], observations_.channels, observations_.of(lumitexels[k]), options_.fit.error);
+        if (value >= best) continue;
+        best = value;
+        label[k] = static_cast<int>(j);
+      }
+      cost[k] = std::isfinite(best) ? best : 0.0;
+    });
+  }
+
+  // Assigns and refits in turn until the labels settle; returns the final cost. Materials that lose their members vanish.
+  double recluster(std::vector<Material>& materials, const Members& lumitexels, std::vector<int>& label, int rounds,
+                   int& rounds_used) const {
+    std::vector<double> cost;
+    std::vector<int> before;
+    for (int round = 0; round < rounds; ++round) {
+      assign(brdfs_of(materials), lumitexels, label, cost);
+      ++rounds_used;
+      if (round > 0 && moved(before, label) <= kSettled * static_cast<double>(label.size())) break;
+      before = label;
+      if (refit(materials, lumitexels, label)) before.clear();
+    }
+    assign(brdfs_of(materials), lumitexels, label, cost);
+    return std::accumulate(cost.begin(), cost.end(), 0.0);
+  }
+
+  Split best_split(const Material& material, const Members& members) const {
+    Split best;
+    if (members.size() < 2 * kFewestMembers) return best;
+    std::vector<int> label;
+    std::vector<double> cost;
+    assign({material.brdf}, members, label, cost);
+    const double whole = std::accumulate(cost.begin(), cost.end(), 0.0);
+    for (const BrdfPair& pair : {split_along_covariance(material, options_.fit.shared_shape),
+                                 split_along_brightness(material, observations_, members, options_.fit.error)}) {
+      std::vector<Material> halves{{pair.first, {}, 0}, {pair.second, {}, 0}};
+      int rounds = 0;
+      const double parted = recluster(halves, members, label, kSplitRounds, rounds);
+      if (halves.size() == 2 && whole - parted > best.gain) best = {halves[0].brdf, halves[1].brdf, whole - parted};
+    }
+    return best;
+  }
+
+  static std::vector<LafortuneBrdf> brdfs_of(const std::vector<Material>& materials) {
+    std::vector<LafortuneBrdf> brdfs;
+    for (const Material& material : materials) brdfs.push_back(material.brdf);
+    return brdfs;
+  }
+
+  static std::vector<Members> members_of(std::size_t materials, const Members& lumitexels, const std::vector<int>& label) {
+    std::vector<Members> members(materials);
+    for (std::size_t k = 0; k < lumitexels.size(); ++k) members[static_cast<std::size_t>(label[k])].push_back(lumitexels[k]);
+    return members;
+  }
+
+ private:
+  static double moved(const std::vector<int>& before, const std::vector<int>& after) {
+    if (before.size() != after.size()) return static_cast<double>(after.size());
+    double count = 0.0;
+    for (std::size_t k = 0; k < after.size(); ++k) count += before[k] != after[k];
+    return count;
+  }
+
+  // True if a material vanished, which shifts the labels.
+  bool refit(std::vector<Material>& materials, const Members& lumitexels, const std::vector<int>& label) const {
+    const std::vector<Members> members = members_of(materials.size(), lumitexels, label);
+    std::vector<Material> kept(materials.size());
+    oneapi::tbb::parallel_for(std::size_t{0}, materials.size(), [&](std::size_t j) {
+      if (members[j].size() >= kFewestMembers) kept[j] = fit(members[j], &materials[j].brdf);
+    });
+    std::erase_if(kept, [](const Material& material) { return material.members == 0; });
+    if (kept.empty()) return false;
+    const bool vanished = kept.size() != materials.size();
+    materials = std::move(kept);
+    return vanished;
+  }
+
+  const Observations& observations_;
+  const ClusterOptions& options_;
+};
+
+// Splits once where it gains most; false if no split gains.
+bool split_once(const Clusterer& clusterer, std::vector<Material>& materials, const Members& selection,
+                const std::vector<int>& label) {
+  const std::vector<Members> members = Clusterer::members_of(materials.size(), selection, label);
+  std::size_t chosen = 0;
+  Split best;
+  for (std::size_t j = 0; j < materials.size(); ++j) {
+    const Split split = clusterer.best_split(materials[j], members[j]);
+    if (split.gain <= best.gain) continue;
+    best = split;
+    chosen = j;
+  }
+  if (best.gain <= 0.0) return false;
+  materials[chosen].brdf = best.first;
+  materials.push_back({best.second, {}, 0});
+  return true;
+}
+
+Members all_lumitexels(const Observations& observations) {
+  Members all(observations.lumitexels());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
+
+int largest(const std::vector<Material>& materials) {
+  std::size_t best = 0;
+  for (std::size_t j = 1; j < materials.size(); ++j) {
+    if (materials[j].members > materials[best].members) best = j;
+  }
+  return static_cast<int>(best);
+}
+
+}  // namespace
+
+double misfit(const LafortuneBrdf& brdf, int channels, std::span<const Observation> samples, const ErrorModel& error) {
+  double sum = 0.0;
+  for (const Observation& sample : samples) {
+    double squares = 0.0;
+    for (int c = 0; c < channels; ++c) {
+      const auto channel = static_cast<std::size_t>(c);
+      const double predicted = predicted_reflectance(brdf, c, sample.geometry);
+      const double variance = error.variance(predicted, static_cast<double>(sample.variance[channel]));
+      const double residual = predicted - static_cast<double>(sample.reflectance[channel]);
+      squares += residual * residual / variance;
+      sum += std::log(variance);
+    }
+    sum += std::min(squares, kMostPerSample * channels);
+  }
+  return sum;
+}
+
+Clustering cluster_materials(const Observations& observations, const std::vector<std::size_t>& selection,
+                             const ClusterOptions& options, const std::function<void(int)>& report) {
+  const Clusterer clusterer(observations, options);
+  Clustering result;
+  std::vector<Material> materials{clusterer.fit(selection, nullptr)};
+  result.single = materials[0].brdf;
+  std::vector<int> label(selection.size(), 0);
+  report(1);
+  while (static_cast<int>(materials.size()) < options.materials) {
+    const std::size_t before = materials.size();
+    if (!split_once(clusterer, materials, selection, label)) break;
+    clusterer.recluster(materials, selection, label, kGlobalRounds, result.recluster_rounds);
+    report(static_cast<int>(materials.size()));
+    if (materials.size() <= before) break;  // the new material did not survive
+  }
+  // From the selection to everything: the largest set of samples fits the final BRDFs.
+  const Members all = all_lumitexels(observations);
+  clusterer.recluster(materials, all, result.label, kFinalRounds, result.recluster_rounds);
+  result.single = clusterer.fit(all, &result.single).brdf;
+  for (Material& material : materials) material.members = 0;
+  for (const int material : result.label) ++materials[static_cast<std::size_t>(material)].members;
+  for (std::size_t i = 0; i < observations.lumitexels(); ++i) {
+    if (observations.of(i).empty()) result.label[i] = largest(materials);
+  }
+  result.materials = std::move(materials);
+  return result;
+}
+
+}  // namespace lumitexel

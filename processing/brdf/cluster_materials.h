@@ -1,0 +1,42 @@
+// Finds the materials of an object by clustering lumitexels (sections 7.2 to 7.4 of the paper).
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "processing/brdf/fit_lobe.h"
+#include "processing/brdf/observations.h"
+
+namespace lumitexel {
+
+struct ClusterOptions {
+  int materials = 4;
+  LobeFitOptions fit;
+};
+
+struct Material {
+  LafortuneBrdf brdf;
+  Eigen::MatrixXd covariance;   // of its LobeParameters
+  std::size_t members = 0;      // lumitexels
+};
+
+struct Clustering {
+  LafortuneBrdf single;             // one BRDF for everything, where the splitting begins
+  std::vector<Material> materials;  // fewer than asked for if no split made the fit better
+  std::vector<int> label;           // material of every lumitexel; those without samples get the largest material
+  int recluster_rounds = 0;
+};
+
+// How badly a BRDF explains a lumitexel: minus twice the log likelihood under the error model, up to a constant. A single
+// sample counts at most kMostPerSample squared deviations, so that one missed shadow does not decide.
+inline constexpr double kMostPerSample = 16.0;
+double misfit(const LafortuneBrdf& brdf, int channels, std::span<const Observation> samples, const ErrorModel& error);
+
+// Learns on `selection` (lumitexel indices), then labels all lumitexels and refits on all of them. Splits the material
+// whose split gains most likelihood, along the first eigenvector of its fit's covariance (eq. 9) or along the direction
+// in which its lumitexels' brightness and colour vary most, whichever gains more; reclusters both halves, then all materials (eq. 10), until no
+// label moves any more. report(k) is called with the number of materials so far.
+Clustering cluster_materials(const Observations& observations, const std::vector<std::size_t>& selection,
+                             const ClusterOptions& options, const std::function<void(int)>& report);
+
+}  // namespace lumitexel

@@ -1,0 +1,37 @@
+// Lumitexels as the fits see them: per sample the two directions, reduced to what an isotropic BRDF depends on, and
+// the measured reflectance.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "processing/brdf/lafortune.h"
+
+namespace lumitexel {
+
+struct Observation {
+  LobeGeometry geometry;
+  std::array<float, kMaxChannels> reflectance{};  // r = f * cos_i, 1/sr
+  std::array<float, kMaxChannels> variance{};     // of each r from the photograph's noise; 0 where unknown
+  std::uint16_t view = 0;
+};
+
+struct Observations {
+  int channels = 0;
+  std::vector<Observation> samples;
+  std::vector<std::size_t> first{0};  // samples of lumitexel i: first[i] … first[i + 1]
+
+  std::size_t lumitexels() const { return first.size() - 1; }
+  std::span<const Observation> of(std::size_t lumitexel) const {
+    return {samples.data() + first[lumitexel], first[lumitexel + 1] - first[lumitexel]};
+  }
+};
+
+// r = f * cos_i that the BRDF predicts in channel c.
+inline double predicted_reflectance(const LafortuneBrdf& brdf, int c, const LobeGeometry& geometry) {
+  return evaluate(brdf, c, geometry) * geometry.cos_i;
+}
+
+}  // namespace lumitexel
