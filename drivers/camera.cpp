@@ -48,12 +48,14 @@ CameraSettings Camera::quantised(const CameraSettings& wanted) const {
   return settings;
 }
 
-Frame Camera::shoot(const CameraSettings& wanted, std::stop_token stop, int max_attempts) {
+Frame Camera::shoot(const CameraSettings& wanted, std::stop_token stop, std::uint64_t frame_key,
+                    int max_attempts) {
   const CameraSettings settings = quantised(wanted);
   CameraSettings last_reported;
   for (int attempt = 0; attempt < max_attempts; ++attempt) {
     arm(settings, stop);
-    Frame frame = trigger(stop);
+    Frame frame = trigger(frame_key, stop);
+    frame.frame_key = frame_key;
     if (frame.reported == settings) return frame;
     last_reported = frame.reported;
   }

@@ -36,6 +36,7 @@ struct Frame {
   double device_time_s = 0.0;          // the camera's own timestamp
   double sensor_temperature_c = 0.0;
   std::uint64_t device_frame_id = 0;
+  std::uint64_t frame_key = 0;         // what the caller of shoot() named the frame
 };
 
 // The sequence arm, trigger, verify is fixed here so that no driver can skip a part of it:
@@ -53,12 +54,15 @@ class Camera {
 
   // Takes one frame with exactly quantised(wanted). A frame that reports other settings is discarded
   // and shot again, up to max_attempts times in all; then throws Protocol.
+  // frame_key: the caller's name for the frame, such as the id of its shot. It is kept in the frame; a simulated
+  // camera draws its noise by it, so that a shot taken after a restart is the shot that would have been taken before.
   // Throws OutOfRange, Timeout, Disconnected, Protocol, Cancelled.
-  Frame shoot(const CameraSettings& wanted, std::stop_token stop, int max_attempts = 3);
+  Frame shoot(const CameraSettings& wanted, std::stop_token stop, std::uint64_t frame_key = 0, int max_attempts = 3);
 
  protected:
   virtual void arm(const CameraSettings& settings, std::stop_token stop) = 0;
-  virtual Frame trigger(std::stop_token stop) = 0;  // blocks until the frame has arrived
+  // Blocks until the frame has arrived. Hardware may ignore frame_key.
+  virtual Frame trigger(std::uint64_t frame_key, std::stop_token stop) = 0;
 };
 
 }  // namespace lumitexel
