@@ -1,0 +1,24 @@
+// From per-lumitexel results to the atlas's maps.
+#pragma once
+
+#include <vector>
+
+#include "processing/brdf/project_weights.h"
+#include "processing/model/model.h"
+#include "processing/surface/atlas.h"
+#include "processing/surface/lumitexel.h"
+
+namespace lumitexel {
+
+// Fills model.width … model.samples from the lumitexels (label and weights per lumitexel, in the set's order).
+// Texels without samples of their own, around patches and inside them, take material and weights from the nearest
+// texel that has some; their normal stays zero (the renderer uses the mesh's), their sample count zero. Triangles
+// that no view saw take the largest material.
+void fill_atlas(const Atlas& atlas, const LumitexelSet& lumitexels, const std::vector<int>& label,
+                const std::vector<TexelWeights>& weights, Model& model);
+
+// Pairs of horizontally or vertically adjacent texels of materials a and b: [a][b], symmetric.
+std::vector<std::vector<std::size_t>> neighbour_counts(const Atlas& atlas, const LumitexelSet& lumitexels,
+                                                       const std::vector<int>& label, std::size_t materials);
+
+}  // namespace lumitexel

@@ -1,0 +1,105 @@
+#include "processing/model/fit_model.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "drivers/error.h"
+#include "processing/brdf/cluster_materials.h"
+#include "processing/brdf/material_basis.h"
+#include "processing/brdf/select_lumitexels.h"
+#include "processing/model/fill_atlas.h"
+#include "processing/model/observe.h"
+#include "processing/model/provenance.h"
+#include "processing/surface/best_view.h"
+#include "processing/surface/gather_lumitexels.h"
+
+namespace lumitexel {
+namespace {
+
+Clustering learn_materials(const Observations& observations, const FitOptions& options, Progress& progress) {
+  progress.begin("materials", options.materials, "materials");
+  ClusterOptions cluster_options;
+  cluster_options.materials = options.materials;
+  cluster_options.fit.shared_shape = options.shared_lobe_shape;
+  cluster_options.fit.error = options.error;
+  const auto selection = select_lumitexels(observations, options.learning_lumitexels);
+  if (selection.empty()) {
+    throw Error("fit: no surface point has " + std::to_string(kFewestSamples) +
+                " samples; more views or more light on the object are needed");
+  }
+  return cluster_materials(observations, selection, cluster_options, [&](int found) { progress.update(found); });
+}
+
+std::vector<TexelWeights> project_all(const Observations& observations, const std::vector<int>& label, const Model& model,
+                                      const FitOptions& options, FitSummary& summary, Progress& progress) {
+  std::vector<std::vector<std::size_t>> members(model.materials.size());
+  for (std::size_t i = 0; i < label.size(); ++i) members[static_cast<std::size_t>(label[i])].push_back(i);
+  std::vector<TexelWeights> weights(label.size());
+  progress.begin("texel weights", static_cast<std::int64_t>(model.materials.size()), "materials");
+  for (std::size_t j = 0; j < members.size(); ++j) {
+    const auto& basis = model.materials[j].basis;
+    summary.prior.push_back(choose_prior_width(observations, members[j], basis, options.error));
+    const double width = summary.prior.back().width;
+    oneapi::tbb::parallel_for(std::size_t{0}, members[j].size(), [&](std::size_t k) {
+      const std::size_t i = members[j][k];
+      weights[i] = project_texel(observations.of(i), observations.channels, basis, options.error, width);
+    });
+    summary.texels_by_material.push_back(members[j].size());
+    progress.update(static_cast<std::int64_t>(j + 1));
+  }
+  return weights;
+}
+
+void set_materials(const Clustering& clustering, const Atlas& atlas, const LumitexelSet& lumitexels,
+                   const Observations& observations, Model& model) {
+  std::vector<LafortuneBrdf> brdfs;
+  for (const Material& material : clustering.materials) brdfs.push_back(material.brdf);
+  const auto counts = neighbour_counts(atlas, lumitexels, clustering.label, brdfs.size());
+  const auto bases = material_bases(brdfs, counts, observations);
+  for (std::size_t j = 0; j < brdfs.size(); ++j) model.materials.push_back({brdfs[j], bases[j]});
+  model.single = clustering.single;
+}
+
+}  // namespace
+
+FittedModel fit_model(const CalibratedSession& session, const FitOptions& options, StageTimer timer, Progress& progress) {
+  FittedModel result;
+  Model& model = result.model;
+  FitSummary& summary = result.summary;
+  model.channels = session.channels;
+
+  timer.begin("atlas");
+  const RayScene scene(session.mesh);
+  const std::vector<int> best_view = choose_best_views(session, scene);
+  summary.unseen_triangles = static_cast<std::size_t>(std::count(best_view.begin(), best_view.end(), kUnseen));
+  if (summary.unseen_triangles == best_view.size()) throw Error("fit: no view sees any triangle of the mesh");
+  const Atlas atlas = make_atlas(session, best_view);
+
+  timer.begin("lumitexels");
+  const GatheredLumitexels gathered = gather_lumitexels(session, atlas, scene, progress);
+  const Observations observations = observe(session, gathered.set);
+  summary.lumitexels = observations.lumitexels();
+  summary.samples = observations.samples.size();
+  summary.rejected = gathered.rejected;
+  for (std::size_t i = 0; i < observations.lumitexels(); ++i) summary.starved += observations.of(i).empty();
+
+  timer.begin("materials");
+  const Clustering clustering = learn_materials(observations, options, progress);
+  set_materials(clustering, atlas, gathered.set, observations, model);
+
+  timer.begin("projection");
+  const auto weights = project_all(observations, clustering.label, model, options, summary, progress);
+
+  timer.begin("model");
+  summary.single = stage_error(model, FitStage::Single, observations, clustering.label, weights);
+  summary.cluster = stage_error(model, FitStage::Cluster, observations, clustering.label, weights);
+  summary.projection = stage_error(model, FitStage::Projection, observations, clustering.label, weights);
+  fill_atlas(atlas, gathered.set, clustering.label, weights, model);
+  timer.end();
+  summary.stages = timer.stages();
+  model.provenance_json = provenance_json(session, options, summary);
+  return result;
+}
+
+}  // namespace lumitexel

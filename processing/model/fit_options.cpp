@@ -1,0 +1,24 @@
+#include "processing/model/fit_options.h"
+
+#include <limits>
+
+#include "drivers/error.h"
+
+namespace lumitexel {
+
+FitOptions FitOptions::preset(const std::string& quality) {
+  FitOptions options;
+  options.quality = quality;
+  if (quality == "draft") {
+    options.learning_lumitexels = 2000;
+  } else if (quality == "standard") {
+    options.learning_lumitexels = 10000;
+  } else if (quality == "reference") {
+    options.learning_lumitexels = std::numeric_limits<std::size_t>::max();
+  } else {
+    throw BadInput("--quality", "'" + quality + "'", "draft, standard or reference");
+  }
+  return options;
+}
+
+}  // namespace lumitexel

@@ -1,0 +1,64 @@
+#include "processing/model/provenance.h"
+
+#include <nlohmann/json.hpp>
+
+namespace lumitexel {
+namespace {
+
+using nlohmann::json;
+
+json rejected_json(const RejectionCounts& rejected) {
+  return {{"outside_frame", rejected.outside_frame}, {"hidden", rejected.hidden},
+          {"in_shadow", rejected.in_shadow},         {"near_depth_edge", rejected.near_depth_edge},
+          {"near_shadow_edge", rejected.near_shadow_edge}, {"grazing", rejected.grazing},
+          {"photograph_flag", rejected.photograph_flag}};
+}
+
+json stages_json(const std::vector<StageCost>& stages) {
+  json list = json::array();
+  for (const StageCost& stage : stages) {
+    list.push_back({{"name", stage.name}, {"seconds", stage.seconds}, {"peak_bytes", stage.peak_bytes}});
+  }
+  return list;
+}
+
+json prior_json(const std::vector<PriorChoice>& prior) {
+  json list = json::array();
+  for (const PriorChoice& choice : prior) {
+    list.push_back({{"width", choice.width}, {"left_out_samples", choice.samples}, {"tried_widths", kPriorWidths},
+                    {"left_out_error", choice.left_out_error}});
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string provenance_json(const CalibratedSession& session, const FitOptions& options, const FitSummary& summary) {
+  json object;
+  object["session_key"] = session.key;
+  object["options"] = {{"quality", options.quality},
+                       {"materials", options.materials},
+                       {"learning_lumitexels", options.learning_lumitexels},
+                       {"shared_lobe_shape", options.shared_lobe_shape},
+                       {"relative_error", options.error.relative},
+                       {"error_floor", options.error.floor}};
+  object["materials"] = summary.texels_by_material.size();
+  object["lumitexels"] = summary.lumitexels;
+  object["samples"] = summary.samples;
+  object["starved_lumitexels"] = summary.starved;
+  object["unseen_triangles"] = summary.unseen_triangles;
+  object["rejected"] = rejected_json(summary.rejected);
+  object["stages"] = stages_json(summary.stages);
+  object["rms"] = {{"single", summary.single.rms}, {"cluster", summary.cluster.rms}, {"projection", summary.projection.rms}};
+  object["rms_by_channel"] = {{"single", summary.single.by_channel},
+                              {"cluster", summary.cluster.by_channel},
+                              {"projection", summary.projection.by_channel}};
+  object["rms_by_material"] = {{"single", summary.single.by_material},
+                               {"cluster", summary.cluster.by_material},
+                               {"projection", summary.projection.by_material}};
+  object["texels_by_material"] = summary.texels_by_material;
+  object["prior"] = prior_json(summary.prior);
+  return object.dump(2);
+}
+
+}  // namespace lumitexel

@@ -1,0 +1,23 @@
+#include "processing/model/stage_timer.h"
+
+#include <sys/resource.h>
+
+namespace lumitexel {
+
+void StageTimer::begin(const std::string& name) {
+  end();
+  stages_.push_back({name, 0.0, 0});
+  started_ = std::chrono::steady_clock::now();
+  open_ = true;
+}
+
+void StageTimer::end() {
+  if (!open_) return;
+  stages_.back().seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  stages_.back().peak_bytes = static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
+  open_ = false;
+}
+
+}  // namespace lumitexel
