@@ -43,6 +43,8 @@ struct View {
   Eigen::Vector3d camera_in_world() const { return camera_from_world.inverse().translation(); }
 };
 
+struct CalibrationSummary;  // calibration_summary.h
+
 struct CalibratedSession {
   int channels = 3;
   std::vector<View> views;  // in the session's order, fit and held out mixed
@@ -52,7 +54,9 @@ struct CalibratedSession {
 };
 
 // Runs what is needed (dark subtraction, HDR merge, light positions, scale, poses; or only reading, for imported
-// sessions) and caches it under derived/calibrated/<key>. Throws BadInput, Corrupt or Error.
-CalibratedSession calibrate_session(const SessionStore& session, Progress& progress);
+// sessions) and caches it under derived/calibrated/<key>. Fills *summary if there is one. Throws BadInput, Corrupt or
+// Error.
+CalibratedSession calibrate_session(const SessionStore& session, Progress& progress,
+                                    CalibrationSummary* summary = nullptr);
 
 }  // namespace lumitexel

@@ -1,0 +1,27 @@
+#include "processing/calibration/calibrated_session.h"
+#include "processing/calibration/calibration_summary.h"
+#include "processing/calibration/captured_views.h"
+#include "processing/calibration/imported_views.h"
+
+namespace lumitexel {
+
+CalibratedSession calibrate_session(const SessionStore& session, Progress& progress, CalibrationSummary* summary) {
+  if (session.kind() == SessionKind::Imported) {
+    CalibratedSession calibrated = calibrate_imported(session, progress);
+    if (summary) {
+      *summary = {};
+      for (const View& view : calibrated.views) {
+        LightSummary& light = summary->lights.emplace_back();
+        light.view = view.name;
+        light.position_in_world = view.light.vector_in_world;
+        light.sigma_m = view.light.sigma_m;
+      }
+    }
+    return calibrated;
+  }
+  auto [calibrated, measured] = calibrate_captured(session, progress);
+  if (summary) *summary = std::move(measured);
+  return calibrated;
+}
+
+}  // namespace lumitexel

@@ -1,0 +1,174 @@
+#include "processing/calibration/sphere_shots.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <optional>
+
+#include "drivers/error.h"
+#include "processing/calibration/sphere_highlights.h"
+#include "processing/image/hdr_merge.h"
+
+namespace lumitexel {
+namespace {
+
+constexpr std::size_t kMostBlobs = 80;  // the search for the row grows with the cube
+constexpr int kReachPx = 8;             // of a fit's window about the blob
+// What a fit cannot know of itself: profile and pixel response differ from the model's, and the spheres stand still, so this does not average out.
+constexpr double kSystematicPx = 0.02;
+constexpr double kStandsElsewherePx = 1.5;
+
+struct SeenHighlight {
+  int sphere = 0;
+  Blob blob;
+  std::optional<FittedHighlight> fit;
+};
+using SeenInView = std::vector<SeenHighlight>;
+
+class SphereShotReader {
+ public:
+  SphereShotReader(const CapturedFrames& frames, const DarkLibrary& darks, const LinearSensor& sensor)
+      : frames_(frames), darks_(darks), sensor_(sensor) {}
+  MosaicRadiance read(const FrameRecord& record) const { return merge_bracket({frames_.load(record)}, darks_, sensor_); }
+
+ private:
+  const CapturedFrames& frames_;
+  const DarkLibrary& darks_;
+  const LinearSensor& sensor_;
+};
+
+void fit_all(const MosaicRadiance& image, const std::optional<ColourBalance>& balance, SeenInView& seen) {
+  for (SeenHighlight& highlight : seen) highlight.fit = fit_highlight(image, highlight.blob.pixel, kReachPx, balance);
+}
+
+std::optional<ColourBalance> common_balance(const std::vector<SeenInView>& views) {
+  std::vector<FittedHighlight> fits;
+  for (const SeenInView& view : views) {
+    for (const SeenHighlight& highlight : view) {
+      if (highlight.fit) fits.push_back(*highlight.fit);
+    }
+  }
+  return colour_balance(fits);
+}
+
+// Finds highlights in every view's shot, fits them with free colours, then again with the lamp's common balance.
+template <typename Record, typename Find>
+std::vector<SeenInView> see(std::size_t views, const SphereShotReader& reader, const Record& record, const Find& find,
+                            const std::function<void()>& step) {
+  std::vector<SeenInView> seen(views);
+  tbb::parallel_for(std::size_t{0}, views, [&](std::size_t v) {
+    const MosaicRadiance image = reader.read(record(v));
+    seen[v] = find(image);
+    fit_all(image, std::nullopt, seen[v]);
+    step();
+  });
+  const std::optional<ColourBalance> balance = common_balance(seen);
+  if (!balance) return seen;
+  tbb::parallel_for(std::size_t{0}, views, [&](std::size_t v) {
+    if (seen[v].empty()) return;
+    fit_all(reader.read(record(v)), balance, seen[v]);
+  });
+  return seen;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// The sphere's ring highlight over all views: median, then the mean of those near it.
+std::optional<HighlightPixel> pooled(const std::vector<SeenInView>& views, int sphere) {
+  std::vector<double> xs, ys, sigmas;
+  for (const SeenInView& view : views) {
+    for (const SeenHighlight& highlight : view) {
+      if (highlight.sphere != sphere || !highlight.fit) continue;
+      xs.push_back(highlight.fit->pixel.x());
+      ys.push_back(highlight.fit->pixel.y());
+      sigmas.push_back(highlight.fit->sigma_px);
+    }
+  }
+  if (xs.empty()) return std::nullopt;
+  const Eigen::Vector2d centre(median(xs), median(ys));
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  double variances = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < xs.size(); ++i) {
+    const Eigen::Vector2d pixel(xs[i], ys[i]);
+    if ((pixel - centre).norm() > kStandsElsewherePx) continue;
+    sum += pixel;
+    variances += sigmas[i] * sigmas[i];
+    ++count;
+  }
+  return HighlightPixel{sphere, sum / count, std::hypot(kSystematicPx, std::sqrt(variances) / count)};
+}
+
+std::vector<HighlightPixel> ring_highlights(const std::vector<SeenInView>& views, int spheres) {
+  std::vector<HighlightPixel> rings;
+  for (int k = 0; k < spheres; ++k) {
+    if (const auto highlight = pooled(views, k)) rings.push_back(*highlight);
+  }
+  if (static_cast<int>(rings.size()) < spheres) {
+    throw Error("sphere shots: no view shows a straight row of " + std::to_string(spheres) + " ring-flash highlights");
+  }
+  return rings;
+}
+
+std::vector<HighlightPixel> fitted(const SeenInView& view) {
+  std::vector<HighlightPixel> points;
+  for (const SeenHighlight& highlight : view) {
+    if (!highlight.fit) continue;
+    points.push_back({highlight.sphere, highlight.fit->pixel, std::hypot(kSystematicPx, highlight.fit->sigma_px)});
+  }
+  return points;
+}
+
+SphereLine first_line(const CameraModel& camera, const std::vector<HighlightPixel>& rings, const SphereLineDescription& spheres) {
+  std::vector<Eigen::Vector3d> rays;
+  for (const HighlightPixel& ring : rings) rays.push_back(camera.unproject(ring.pixel));
+  return sphere_line_from_rays(rays, spheres.spacing_m, spheres.radius_m);
+}
+
+SeenInView find_rings(const MosaicRadiance& image, const CameraModel& camera, int spheres) {
+  SeenInView seen;
+  const auto row = find_sphere_row(compact_blobs(image, kMostBlobs), camera, spheres);
+  if (!row) return seen;
+  for (const Blob& blob : *row) seen.push_back({static_cast<int>(seen.size()), blob, std::nullopt});
+  return seen;
+}
+
+SeenInView find_points(const MosaicRadiance& image, const CameraModel& camera, const SphereLine& line) {
+  SeenInView seen;
+  constexpr std::size_t kAll = 10'000;
+  for (const auto& [sphere, blob] : find_point_highlights(compact_blobs(image, kAll), camera, line)) {
+    seen.push_back({sphere, blob, std::nullopt});
+  }
+  return seen;
+}
+
+}  // namespace
+
+LightSolution measure_lights(const CapturedFrames& frames, const std::vector<SphereShots>& views, const DarkLibrary& darks,
+                             const LinearSensor& sensor, const CameraModel& camera, const RigDescription& rig,
+                             Progress& progress) {
+  const SphereShotReader reader(frames, darks, sensor);
+  std::atomic<std::int64_t> done{0};
+  const auto step = [&] { progress.update(++done); };
+  progress.begin("sphere shots", static_cast<std::int64_t>(2 * views.size()), "shots");
+  const auto ring_views = see(
+      views.size(), reader, [&](std::size_t v) -> const FrameRecord& { return views[v].ring; },
+      [&](const MosaicRadiance& image) { return find_rings(image, camera, rig.spheres.count); }, step);
+  const std::vector<HighlightPixel> rings = ring_highlights(ring_views, rig.spheres.count);
+  const SphereLine line = first_line(camera, rings, rig.spheres);
+  const auto point_views = see(
+      views.size(), reader, [&](std::size_t v) -> const FrameRecord& { return views[v].point; },
+      [&](const MosaicRadiance& image) { return find_points(image, camera, line); }, step);
+  std::vector<std::vector<HighlightPixel>> points;
+  for (const SeenInView& view : point_views) points.push_back(fitted(view));
+  return solve_lights(camera, line, rig.ring_flash.radius_m, rings, points);
+}
+
+}  // namespace lumitexel
