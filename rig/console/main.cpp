@@ -16,6 +16,9 @@ constexpr int kFailed = 1, kBadInput = 2;
 const std::vector<void (*)(CLI::App&, CommandAction&)> kCommands = {
     add_plan_command,
     add_verify_command,
+    add_render_command,
+    add_evaluate_command,
+    add_report_command,
 };
 
 std::stop_source& interrupt() {
