@@ -1,5 +1,6 @@
 #include "drivers/camera.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <sstream>
@@ -32,21 +33,27 @@ Mosaic mosaic_from_string(const std::string& name) {
   throw BadInput("mosaic", "'" + name + "'", "mono, rggb, bggr, grbg or gbrg");
 }
 
-CameraSettings Camera::quantised(const CameraSettings& wanted) const {
-  const CameraLimits limit = limits();
+CameraSettings quantise(const CameraSettings& wanted, const CameraLimits& limits, const std::string& camera_name) {
   // Written so that NaN fails the check as well.
-  if (!(wanted.exposure_s >= limit.exposure_min_s && wanted.exposure_s <= limit.exposure_max_s)) {
+  if (!(wanted.exposure_s >= limits.exposure_min_s && wanted.exposure_s <= limits.exposure_max_s)) {
     std::ostringstream text;
-    text << name() << ": exposure " << wanted.exposure_s << " s asked for, the camera takes "
-         << limit.exposure_min_s << " to " << limit.exposure_max_s << " s";
+    text << camera_name << ": exposure " << wanted.exposure_s << " s asked for, the camera takes "
+         << limits.exposure_min_s << " to " << limits.exposure_max_s << " s";
     throw OutOfRange(text.str());
   }
   CameraSettings settings = wanted;
-  if (limit.exposure_step_s > 0.0) {
-    settings.exposure_s = std::round(wanted.exposure_s / limit.exposure_step_s) * limit.exposure_step_s;
+  if (limits.exposure_step_s > 0.0) {
+    // The nearest multiple may lie just outside the limits; 1e-6 of a step forgives rounding in min / step.
+    const double step = limits.exposure_step_s;
+    const double fewest = std::ceil(limits.exposure_min_s / step - 1e-6);
+    const double most = std::floor(limits.exposure_max_s / step + 1e-6);
+    const double count = std::max(fewest, std::min(most, std::round(wanted.exposure_s / step)));
+    settings.exposure_s = std::clamp(count * step, limits.exposure_min_s, limits.exposure_max_s);
   }
   return settings;
 }
+
+CameraSettings Camera::quantised(const CameraSettings& wanted) const { return quantise(wanted, limits(), name()); }
 
 Frame Camera::shoot(const CameraSettings& wanted, std::stop_token stop, std::uint64_t frame_key,
                     int max_attempts) {

@@ -28,6 +28,10 @@ struct CameraLimits {
   double readout_s = 0.0;        // from the end of the exposure to the frame's arrival
 };
 
+// The settings nearest to the wanted ones that a camera with these limits can really apply; applying it twice changes
+// nothing. Throws OutOfRange, naming the camera, outside exposure_min_s..exposure_max_s.
+CameraSettings quantise(const CameraSettings& wanted, const CameraLimits& limits, const std::string& camera_name);
+
 struct Frame {
   int width_px = 0, height_px = 0, bits = 16;
   Mosaic mosaic = Mosaic::Mono;
@@ -48,8 +52,7 @@ class Camera {
   virtual std::string name() const = 0;
   virtual CameraLimits limits() const = 0;
 
-  // The settings nearest to the wanted ones that the camera can really apply.
-  // Throws OutOfRange outside exposure_min_s..exposure_max_s.
+  // quantise() with this camera's limits.
   CameraSettings quantised(const CameraSettings& wanted) const;
 
   // Takes one frame with exactly quantised(wanted). A frame that reports other settings is discarded

@@ -50,6 +50,9 @@ class SessionStore {
  public:
   // Creates the directory and an empty journal. Throws BadInput if `directory` exists and is not an empty folder.
   static SessionStore create(const std::filesystem::path& directory, SessionKind kind);
+  // Throws what create() would throw for this directory, and creates nothing.
+  static void require_new_directory(const std::filesystem::path& directory);
+  // ReadWrite: throws Error while another process has the session open for writing. ReadOnly never waits for it.
   // Throws BadInput if there is no session, Corrupt if the journal is not one of ours or of a newer version.
   static SessionStore open(const std::filesystem::path& directory, OpenMode mode);
   SessionStore(SessionStore&&) noexcept;
@@ -81,6 +84,9 @@ class SessionStore {
 
   void log_event(const std::string& level, const std::string& text, std::int64_t utc_ns);
   std::vector<SessionEvent> events() const;
+
+  // What the database finds wrong with itself; empty if nothing.
+  std::vector<std::string> journal_problems() const;
 
   // Hash over documents, shots and frame hashes: the identity of everything measured. A stage that reads this
   // session keys its cache with it.

@@ -29,4 +29,7 @@ struct Shot {
   double turntable_deg = 0, light_azimuth_deg = 0, light_elevation_deg = 0;
 };
 
+// The file inside frames/ that holds the shot's frame: "000017_object.pgm".
+std::string frame_file_name(const Shot& shot);
+
 }  // namespace lumitexel

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "processing/surface/mesh.h"
 #include "rig/capture_plan.h"
@@ -13,19 +14,23 @@ namespace lumitexel {
 
 class SimulatedWorld;
 
-// Reads the rig's [simulation] table. Throws BadInput naming `where` and the key.
+// Reads the rig's [simulation] table. `where` is the rig file's path: a mesh file is looked for relative to its folder.
+// Throws BadInput naming `where` and the key.
 std::shared_ptr<SimulatedWorld> build_world(const RigDescription& rig, const std::string& where);
 
-// Devices over the world, with a VirtualClock. Frames depend only on the rig's seed, the shot's settings, the
-// axes' positions, the lamps and how many frames of exactly these were taken before, so a resumed session gets the same pixels as an
-// uninterrupted one.
+// Devices over the world, with a virtual clock. A frame's pixels depend on the rig's seed, the frame_key given to
+// Camera::shoot, the settings, the axes' positions and the lamps, and on nothing else: a shot that a resumed session
+// takes is, bit for bit, the one that an uninterrupted session would have taken. Two shots differ in their noise if
+// their keys do. Moves, settling, exposures and readout take their time on the clock.
 RigDevices make_simulated_devices(const RigDescription& rig, std::shared_ptr<SimulatedWorld> world);
 
 // What a scanner would deliver of the world's object: smoothed, decimated, in the table's frame.
 Mesh scanned_mesh(const SimulatedWorld& world);
 
-// The truth that tests and `evaluate` read, under SESSION/truth/: calibration.json (as `calibrate --json`
-// prints it), mesh.ply (the true surface), and per view NAME_normal.exr (unit normals in the table's frame) and NAME_material.exr.
+// The truth that tests and `evaluate` read, under SESSION/truth/: calibration.json (as `calibrate --json` prints it, and
+// the lights' intensities; scale.value is radiance per electron/s), mesh.ply (the true surface), and per view, at pixel
+// centres, NAME_normal.exr (unit normals in the table's frame) and NAME_material.exr (1 for the first of
+// simulation.materials; 0 outside the object). Throws Error if it cannot be written.
 void write_truth(const SimulatedWorld& world, const RigDescription& rig, const CapturePlan& plan,
                  const std::filesystem::path& truth_directory);
 

@@ -13,7 +13,6 @@ namespace {
 
 constexpr int kSplitRounds = 6;
 constexpr int kGlobalRounds = 12;
-constexpr int kFinalRounds = 3;
 constexpr double kSettled = 0.002;           // share of labels that may still move when reclustering ends
 constexpr std::size_t kFewestMembers = 20;   // a material needs as many lumitexels
 
@@ -150,6 +149,27 @@ Members all_lumitexels(const Observations& observations) {
   return all;
 }
 
+Members thinned(const Members& members, std::size_t most) {
+  const std::size_t stride = members.size() / most + 1;
+  Members some;
+  for (std::size_t k = 0; k < members.size(); k += stride) some.push_back(members[k]);
+  return some;
+}
+
+// From the selection to everything: labels all lumitexels, refits each material on many of its members, labels again.
+void label_all(const Clusterer& clusterer, const Observations& observations, std::size_t most,
+               std::vector<Material>& materials, Clustering& result) {
+  const Members all = all_lumitexels(observations);
+  std::vector<double> cost;
+  clusterer.assign(Clusterer::brdfs_of(materials), all, result.label, cost);
+  const std::vector<Members> members = Clusterer::members_of(materials.size(), all, result.label);
+  for (std::size_t j = 0; j < materials.size(); ++j) {
+    if (!members[j].empty()) materials[j] = clusterer.fit(thinned(members[j], most), &materials[j].brdf);
+  }
+  clusterer.assign(Clusterer::brdfs_of(materials), all, result.label, cost);
+  result.single = clusterer.fit(thinned(all, most), &result.single).brdf;
+}
+
 int largest(const std::vector<Material>& materials) {
   std::size_t best = 0;
   for (std::size_t j = 1; j < materials.size(); ++j) {
@@ -192,10 +212,7 @@ Clustering cluster_materials(const Observations& observations, const std::vector
     report(static_cast<int>(materials.size()));
     if (materials.size() <= before) break;  // the new material did not survive
   }
-  // From the selection to everything: the largest set of samples fits the final BRDFs.
-  const Members all = all_lumitexels(observations);
-  clusterer.recluster(materials, all, result.label, kFinalRounds, result.recluster_rounds);
-  result.single = clusterer.fit(all, &result.single).brdf;
+  label_all(clusterer, observations, options.final_lumitexels, materials, result);
   for (Material& material : materials) material.members = 0;
   for (const int material : result.label) ++materials[static_cast<std::size_t>(material)].members;
   for (std::size_t i = 0; i < observations.lumitexels(); ++i) {

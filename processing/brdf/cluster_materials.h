@@ -11,6 +11,7 @@ namespace lumitexel {
 
 struct ClusterOptions {
   int materials = 4;
+  std::size_t final_lumitexels = 5000;  // a material's final fit takes at most so many of its members
   LobeFitOptions fit;
 };
 
@@ -32,7 +33,7 @@ struct Clustering {
 inline constexpr double kMostPerSample = 16.0;
 double misfit(const LafortuneBrdf& brdf, int channels, std::span<const Observation> samples, const ErrorModel& error);
 
-// Learns on `selection` (lumitexel indices), then labels all lumitexels and refits on all of them. Splits the material
+// Learns on `selection` (lumitexel indices), then labels all lumitexels and refits on many of each material's. Splits the material
 // whose split gains most likelihood, along the first eigenvector of its fit's covariance (eq. 9) or along the direction
 // in which its lumitexels' brightness and colour vary most, whichever gains more; reclusters both halves, then all materials (eq. 10), until no
 // label moves any more. report(k) is called with the number of materials so far.

@@ -11,7 +11,15 @@
 namespace lumitexel {
 namespace {
 
-constexpr std::size_t kMostTried = 3000;  // lumitexels that the choice of the prior looks at
+constexpr std::size_t kMostTried = 1500;  // lumitexels that the choice of the prior looks at
+constexpr double kDiffuseWidths[] = {0.05, 0.1, 0.2, 0.4, 0.8};
+constexpr double kGlossWidths[] = {0.01, 0.03, 0.1, 0.3, 1.0};
+// A weak pull on every weight, so that bases that look alike share what neither data nor prior tell apart.
+constexpr double kWeightWidth = 2.0;
+// Relative to at least this reflectance (1/sr): a metal has no diffuse light to vary by a fraction of.
+constexpr double kFaintest = 0.01;
+constexpr LobeGeometry kDiffuseGeometry{1.0, 0.7071067811865476, 0.7071067811865476};  // wi = wo, 45 degrees
+constexpr LobeGeometry kGlossGeometry{0.5, 0.8660254037844387, 0.8660254037844387};    // mirror, 30 degrees
 
 struct SampleEquation {  // one sample in one channel
   BasisVector predicted;
@@ -47,17 +55,53 @@ TexelSystem system_of(std::span<const Observation> samples, int channels, const 
   return system;
 }
 
-BasisVector prior_mean(Eigen::Index n) {
-  BasisVector mean = BasisVector::Zero(n);
-  mean[0] = 1.0;
-  return mean;
+// Precision of the prior on the weights; its mean is (1, 0, 0, …), the material itself.
+class PriorPrecision {
+ public:
+  PriorPrecision(const std::vector<LafortuneBrdf>& basis, int channels)
+      : diffuse_(gram(basis, channels, kDiffuseGeometry)), gloss_(gram(basis, channels, kGlossGeometry)) {}
+
+  void add_to(const TexelPrior& prior, BasisMatrix& matrix, BasisVector& right) const {
+    if (std::isinf(prior.diffuse_width) && std::isinf(prior.gloss_width)) return;
+    BasisMatrix precision = diffuse_ / (prior.diffuse_width * prior.diffuse_width) +
+                            gloss_ / (prior.gloss_width * prior.gloss_width);
+    precision.diagonal().array() += 1.0 / (kWeightWidth * kWeightWidth);
+    matrix += precision;
+    right += precision.col(0);
+  }
+
+ private:
+  // Mean over channels of b b^T, b the bases' reflectances relative to the material's at one geometry.
+  static BasisMatrix gram(const std::vector<LafortuneBrdf>& basis, int channels, const LobeGeometry& geometry) {
+    const auto n = static_cast<Eigen::Index>(basis.size());
+    BasisMatrix sum = BasisMatrix::Zero(n, n);
+    for (int c = 0; c < channels; ++c) {
+      const double own = std::max(kFaintest, evaluate(basis[0], c, geometry));
+      BasisVector relative(n);
+      for (Eigen::Index k = 0; k < n; ++k) relative[k] = evaluate(basis[static_cast<std::size_t>(k)], c, geometry) / own;
+      sum += relative * relative.transpose() / channels;
+    }
+    return sum;
+  }
+
+  BasisMatrix diffuse_, gloss_;
+};
+
+bool nothing_varies(const TexelPrior& prior) { return prior.diffuse_width <= 0.0 && prior.gloss_width <= 0.0; }
+
+BasisVector material_alone(Eigen::Index n) {
+  BasisVector weights = BasisVector::Zero(n);
+  weights[0] = 1.0;
+  return weights;
 }
 
-void add_prior(double width, BasisMatrix& matrix, BasisVector& right) {
-  if (std::isinf(width)) return;
-  const double precision = 1.0 / (width * width);
-  matrix.diagonal().array() += precision;
-  right[0] += precision;  // times the mean, which is (1, 0, 0, …)
+// The candidates: nothing varies, then every pair of widths.
+std::vector<TexelPrior> candidate_priors() {
+  std::vector<TexelPrior> priors{{0.0, 0.0}};
+  for (const double diffuse : kDiffuseWidths) {
+    for (const double gloss : kGlossWidths) priors.push_back({diffuse, gloss});
+  }
+  return priors;
 }
 
 // Posterior one-sigma of the prediction, pooled over the texel's own samples, relative to the prediction.
@@ -82,9 +126,20 @@ double relative_sigma(const TexelSystem& system, const NnlsSolution& solution, B
   return std::sqrt(std::max(0.0, variance) / square);
 }
 
-// Capped squared deviations of each sample of the texel, predicted from the others; added per width.
+struct Candidates {
+  std::vector<TexelPrior> priors = candidate_priors();
+  PriorPrecision precision;
+};
+
+// What leaving samples out costs with one candidate.
+struct LeftOut {
+  double capped = 0;  // weighted squared deviations, each sample's capped
+  double plain = 0;   // plain squared deviations, as a rendering shows them
+};
+
+// Adds the cost of each sample of the texel, predicted from the others, per candidate.
 void leave_one_out(std::span<const Observation> samples, int channels, const std::vector<LafortuneBrdf>& basis,
-                   const ErrorModel& error, std::vector<double>& sums) {
+                   const ErrorModel& error, const Candidates& candidates, std::vector<LeftOut>& sums) {
   const TexelSystem system = system_of(samples, channels, basis, error);
   const auto stride = static_cast<std::size_t>(channels);
   for (std::size_t s = 0; s < samples.size(); ++s) {
@@ -95,20 +150,21 @@ void leave_one_out(std::span<const Observation> samples, int channels, const std
       matrix -= equation.weight * equation.predicted * equation.predicted.transpose();
       right -= equation.weight * equation.measured * equation.predicted;
     }
-    for (std::size_t w = 0; w < std::size(kPriorWidths); ++w) {
-      BasisVector weights = prior_mean(matrix.rows());
-      if (kPriorWidths[w] > 0.0) {
+    for (std::size_t p = 0; p < candidates.priors.size(); ++p) {
+      BasisVector weights = material_alone(matrix.rows());
+      if (!nothing_varies(candidates.priors[p])) {
         BasisMatrix with_prior = matrix;
         BasisVector right_with_prior = right;
-        add_prior(kPriorWidths[w], with_prior, right_with_prior);
+        candidates.precision.add_to(candidates.priors[p], with_prior, right_with_prior);
         weights = solve_nnls(with_prior, right_with_prior).weights;
       }
       double squares = 0.0;
       for (std::size_t e = s * stride; e < (s + 1) * stride; ++e) {
         const double residual = system.equations[e].predicted.dot(weights) - system.equations[e].measured;
         squares += system.equations[e].weight * residual * residual;
+        sums[p].plain += residual * residual;
       }
-      sums[w] += std::min(squares, kMostPerSample * channels);
+      sums[p].capped += std::min(squares, kMostPerSample * channels);
     }
   }
 }
@@ -116,46 +172,54 @@ void leave_one_out(std::span<const Observation> samples, int channels, const std
 }  // namespace
 
 TexelWeights project_texel(std::span<const Observation> samples, int channels, const std::vector<LafortuneBrdf>& basis,
-                           const ErrorModel& error, double prior_width) {
+                           const ErrorModel& error, const TexelPrior& prior) {
   TexelWeights result;
   result.weight.assign(basis.size(), 0.0f);
   result.weight[0] = 1.0f;
-  if (samples.empty() || prior_width <= 0.0) return result;
+  if (samples.empty() || nothing_varies(prior)) return result;
   const TexelSystem system = system_of(samples, channels, basis, error);
   BasisMatrix matrix = system.matrix;
   BasisVector right = system.right;
-  add_prior(prior_width, matrix, right);
+  PriorPrecision(basis, channels).add_to(prior, matrix, right);
   const NnlsSolution solution = solve_nnls(matrix, right);
   if (!solution.weights.allFinite()) return result;
-  for (std::size_t k = 0; k < basis.size(); ++k) result.weight[k] = static_cast<float>(solution.weights[static_cast<Eigen::Index>(k)]);
+  for (std::size_t k = 0; k < basis.size(); ++k) {
+    result.weight[k] = static_cast<float>(solution.weights[static_cast<Eigen::Index>(k)]);
+  }
   result.relative_sigma = static_cast<float>(relative_sigma(system, solution, matrix));
   return result;
 }
 
-PriorChoice choose_prior_width(const Observations& observations, const std::vector<std::size_t>& members,
-                               const std::vector<LafortuneBrdf>& basis, const ErrorModel& error) {
+PriorChoice choose_prior(const Observations& observations, const std::vector<std::size_t>& members,
+                         const std::vector<LafortuneBrdf>& basis, const ErrorModel& error) {
+  const Candidates candidates{candidate_priors(), PriorPrecision(basis, observations.channels)};
   std::vector<std::size_t> tried;
   for (const std::size_t i : members) {
     if (observations.of(i).size() >= 2) tried.push_back(i);  // with one sample nothing is left to predict from
   }
   const std::size_t stride = tried.size() / kMostTried + 1;
-  std::vector<std::vector<double>> sums((tried.size() + stride - 1) / stride,
-                                        std::vector<double>(std::size(kPriorWidths), 0.0));
+  std::vector<std::vector<LeftOut>> sums((tried.size() + stride - 1) / stride,
+                                         std::vector<LeftOut>(candidates.priors.size()));
   oneapi::tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t k) {
-    leave_one_out(observations.of(tried[k * stride]), observations.channels, basis, error, sums[k]);
+    leave_one_out(observations.of(tried[k * stride]), observations.channels, basis, error, candidates, sums[k]);
   });
   PriorChoice choice;
-  choice.left_out_error.assign(std::size(kPriorWidths), 0.0);
+  std::vector<LeftOut> total(candidates.priors.size());
   for (std::size_t k = 0; k < sums.size(); ++k) {
-    for (std::size_t w = 0; w < std::size(kPriorWidths); ++w) choice.left_out_error[w] += sums[k][w];
+    for (std::size_t p = 0; p < total.size(); ++p) {
+      total[p].capped += sums[k][p].capped;
+      total[p].plain += sums[k][p].plain;
+    }
     choice.samples += observations.of(tried[k * stride]).size();
   }
   std::size_t best = 0;
-  for (std::size_t w = 0; w < std::size(kPriorWidths); ++w) {
-    choice.left_out_error[w] /= std::max<double>(1.0, static_cast<double>(choice.samples * static_cast<std::size_t>(observations.channels)));
-    if (choice.left_out_error[w] < choice.left_out_error[best]) best = w;
+  for (std::size_t p = 1; p < total.size(); ++p) {
+    if (total[p].capped < total[best].capped && total[p].plain <= total[0].plain) best = p;
   }
-  choice.width = kPriorWidths[best];
+  const double residuals = std::max<double>(1.0, static_cast<double>(choice.samples) * observations.channels);
+  choice.prior = candidates.priors[best];
+  choice.left_out_error = total[best].capped / residuals;
+  choice.left_out_error_without = total[0].capped / residuals;
   return choice;
 }
 

@@ -2,11 +2,13 @@
 // all samples and channels, with a Gaussian prior around the material itself.
 //
 // With a handful of samples and more bases than that, plain least squares predicts unseen photographs worse than the
-// material alone does. The prior says how far texels of one material differ; its width is not chosen by hand but by leaving
-// out one sample after the other and predicting it: where texels do not differ, the prior is narrow and projection returns the material.
+// material alone does. The prior says how far texels of one material differ in what one sees: in the diffuse reflectance (light and
+// view at 45 degrees on the same side) and in the gloss (mirror reflection at 30 degrees). Its two widths are not chosen by
+// hand but by leaving out one sample after the other and predicting it: where texels do not differ, both are zero
+// and projection returns the material.
 #pragma once
 
-#include <functional>
+#include <span>
 #include <vector>
 
 #include "processing/brdf/error_model.h"
@@ -15,25 +17,32 @@
 
 namespace lumitexel {
 
+// One-sigma of a texel's relative deviation from its material. Both infinite: the paper's plain least squares.
+// Either may be zero only with the other: then nothing varies.
+struct TexelPrior {
+  double diffuse_width = 0.4, gloss_width = 0.1;
+};
+
 struct TexelWeights {
   std::vector<float> weight;     // of each basis, >= 0
   float relative_sigma = 0;      // one-sigma of the predicted reflectance, relative, from the posterior
 };
 
-// Weights of one texel. basis[0] is the material itself. prior_width: standard deviation of each weight about
-// (1, 0, 0, …); infinity is the paper's plain non-negative least squares.
+// Weights of one texel. basis[0] is the material itself.
 TexelWeights project_texel(std::span<const Observation> samples, int channels, const std::vector<LafortuneBrdf>& basis,
-                           const ErrorModel& error, double prior_width);
+                           const ErrorModel& error, const TexelPrior& prior);
 
 struct PriorChoice {
-  double width = 0;                  // the best of kPriorWidths
-  std::vector<double> left_out_error;  // per width: mean of the capped squared deviations of left-out samples
-  std::size_t samples = 0;           // that were left out in turn
+  TexelPrior prior;
+  double left_out_error = 0;            // mean of the capped squared deviations of left-out samples, with that prior
+  double left_out_error_without = 0;    // the same with the material alone
+  std::size_t samples = 0;              // that were left out in turn
 };
-inline constexpr double kPriorWidths[] = {0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8, 2.0};
 
+// The pair of widths whose left-out samples are predicted best in the error model's sense, among those that do not
+// predict them worse than the material alone does in plain squares, which is what a rendering shows.
 // members: lumitexels of the material; at most some thousand of them are tried.
-PriorChoice choose_prior_width(const Observations& observations, const std::vector<std::size_t>& members,
-                               const std::vector<LafortuneBrdf>& basis, const ErrorModel& error);
+PriorChoice choose_prior(const Observations& observations, const std::vector<std::size_t>& members,
+                         const std::vector<LafortuneBrdf>& basis, const ErrorModel& error);
 
 }  // namespace lumitexel

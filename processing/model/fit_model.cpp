@@ -39,11 +39,11 @@ std::vector<TexelWeights> project_all(const Observations& observations, const st
   progress.begin("texel weights", static_cast<std::int64_t>(model.materials.size()), "materials");
   for (std::size_t j = 0; j < members.size(); ++j) {
     const auto& basis = model.materials[j].basis;
-    summary.prior.push_back(choose_prior_width(observations, members[j], basis, options.error));
-    const double width = summary.prior.back().width;
+    summary.prior.push_back(choose_prior(observations, members[j], basis, options.error));
+    const TexelPrior prior = summary.prior.back().prior;
     oneapi::tbb::parallel_for(std::size_t{0}, members[j].size(), [&](std::size_t k) {
       const std::size_t i = members[j][k];
-      weights[i] = project_texel(observations.of(i), observations.channels, basis, options.error, width);
+      weights[i] = project_texel(observations.of(i), observations.channels, basis, options.error, prior);
     });
     summary.texels_by_material.push_back(members[j].size());
     progress.update(static_cast<std::int64_t>(j + 1));

@@ -25,8 +25,11 @@ json stages_json(const std::vector<StageCost>& stages) {
 json prior_json(const std::vector<PriorChoice>& prior) {
   json list = json::array();
   for (const PriorChoice& choice : prior) {
-    list.push_back({{"width", choice.width}, {"left_out_samples", choice.samples}, {"tried_widths", kPriorWidths},
-                    {"left_out_error", choice.left_out_error}});
+    list.push_back({{"diffuse_width", choice.prior.diffuse_width},
+                    {"gloss_width", choice.prior.gloss_width},
+                    {"left_out_samples", choice.samples},
+                    {"left_out_error", choice.left_out_error},
+                    {"left_out_error_without", choice.left_out_error_without}});
   }
   return list;
 }

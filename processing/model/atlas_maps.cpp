@@ -1,0 +1,148 @@
+#include "processing/model/atlas_maps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "drivers/error.h"
+#include "processing/image/exr_file.h"
+
+namespace lumitexel {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kPlanesPerFile = 4;
+constexpr float kNoMaterialOnDisk = 65535.0f;
+constexpr double kUnitTolerance = 1e-3;   // a unit normal in single, or even half, precision passes
+const std::vector<std::string> kWeightPlanes{"R", "G", "B", "A"};  // names that every reader shows
+
+std::string weights_file(int file) { return "weights_" + std::to_string(file) + ".exr"; }
+int weight_files(int basis_size) { return (basis_size + kPlanesPerFile - 1) / kPlanesPerFile; }
+
+std::size_t texels(const Model& model) {
+  return static_cast<std::size_t>(model.width) * static_cast<std::size_t>(model.height);
+}
+
+void write_cluster_map(const fs::path& path, const Model& model) {
+  ExrPlane plane{"Y", ExrPixel::Uint, std::vector<float>(texels(model))};
+  std::transform(model.material.begin(), model.material.end(), plane.data.begin(), [](std::int16_t material) {
+    return material == Model::kNoMaterial ? kNoMaterialOnDisk : static_cast<float>(material);
+  });
+  write_exr(path, {model.width, model.height, {std::move(plane)}});
+}
+
+// Files are always four planes wide; planes past the last weight are zero.
+void write_weights(const fs::path& directory, const Model& model) {
+  for (int file = 0; file < weight_files(model.weights.channels); ++file) {
+    ExrImage exr{model.width, model.height, {}};
+    for (int plane = 0; plane < kPlanesPerFile; ++plane) {
+      std::vector<float> data(texels(model), 0.0f);
+      const int k = file * kPlanesPerFile + plane;
+      if (k < model.weights.channels) {
+        for (std::size_t t = 0; t < data.size(); ++t) {
+          data[t] = model.weights.data[t * static_cast<std::size_t>(model.weights.channels) + static_cast<std::size_t>(k)];
+        }
+      }
+      exr.planes.push_back({kWeightPlanes[static_cast<std::size_t>(plane)], ExrPixel::Float, std::move(data)});
+    }
+    write_exr(directory / weights_file(file), exr);
+  }
+}
+
+std::string texel_name(const fs::path& path, const Model& model, std::size_t texel) {
+  const auto width = static_cast<std::size_t>(model.width);
+  return path.string() + ": texel (" + std::to_string(texel % width) + ", " + std::to_string(texel / width) + ")";
+}
+
+void require_size(const fs::path& path, const Model& model, int width, int height) {
+  if (width == model.width && height == model.height) return;
+  throw BadInput(path.string(), std::to_string(width) + "x" + std::to_string(height) + " texels",
+                 std::to_string(model.width) + "x" + std::to_string(model.height) + " as model.json says");
+}
+
+// All values finite and at least `minimum`; the planes by the given names, interleaved.
+Image read_map(const fs::path& path, const Model& model, const std::vector<std::string>& names, float minimum) {
+  const ExrImage exr = read_exr(path);
+  require_size(path, model, exr.width, exr.height);
+  Image map(model.width, model.height, static_cast<int>(names.size()));
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    const auto plane = std::find_if(exr.planes.begin(), exr.planes.end(), [&](const ExrPlane& p) { return p.name == names[c]; });
+    if (plane == exr.planes.end()) throw BadInput(path.string(), "no channel " + names[c], "that channel");
+    for (std::size_t t = 0; t < plane->data.size(); ++t) {
+      const float value = plane->data[t];
+      if (!std::isfinite(value) || value < minimum) {
+        throw BadInput(texel_name(path, model, t) + ", channel " + names[c], std::to_string(value),
+                       minimum == 0.0f ? "a finite value of 0 or more" : "a finite value");
+      }
+      map.data[t * names.size() + c] = value;
+    }
+  }
+  return map;
+}
+
+void read_cluster_map(const fs::path& path, Model& model) {
+  const Image map = read_map(path, model, {"Y"}, 0.0f);
+  model.material.resize(map.data.size());
+  for (std::size_t t = 0; t < map.data.size(); ++t) {
+    const float value = map.data[t];
+    const bool none = value == kNoMaterialOnDisk;
+    if (!none && (value != std::floor(value) || value >= static_cast<float>(model.materials.size()))) {
+      throw BadInput(texel_name(path, model, t), "material " + std::to_string(value),
+                     "65535 or a material below " + std::to_string(model.materials.size()));
+    }
+    model.material[t] = static_cast<std::int16_t>(none ? Model::kNoMaterial : static_cast<int>(value));
+  }
+}
+
+void read_weights(const fs::path& directory, int basis_size, Model& model) {
+  model.weights = Image(model.width, model.height, basis_size);
+  for (int file = 0; file < weight_files(basis_size); ++file) {
+    const Image four = read_map(directory / weights_file(file), model, kWeightPlanes, 0.0f);
+    const int planes = std::min(kPlanesPerFile, basis_size - file * kPlanesPerFile);
+    for (std::size_t t = 0; t < texels(model); ++t) {
+      const float* from = &four.data[t * kPlanesPerFile];
+      std::copy(from, from + planes,
+                &model.weights.data[t * static_cast<std::size_t>(basis_size) + static_cast<std::size_t>(file * kPlanesPerFile)]);
+    }
+  }
+}
+
+void read_normals(const fs::path& path, Model& model) {
+  model.normal = read_map(path, model, {"R", "G", "B"}, std::numeric_limits<float>::lowest());
+  for (std::size_t t = 0; t < texels(model); ++t) {
+    const float* n = &model.normal.data[3 * t];
+    const double length = std::sqrt(static_cast<double>(n[0]) * n[0] + static_cast<double>(n[1]) * n[1] +
+                                    static_cast<double>(n[2]) * n[2]);
+    if (length != 0.0 && std::abs(length - 1.0) > kUnitTolerance) {
+      throw BadInput(texel_name(path, model, t), "a normal of length " + std::to_string(length), "length 1, or 0 for none");
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<AtlasMap> atlas_maps(int basis_size) {
+  std::vector<AtlasMap> maps{
+      {"cluster.exr", {"Y"}}, {"normal.exr", {"R", "G", "B"}}, {"uncertainty.exr", {"Y"}}, {"samples.exr", {"Y"}}};
+  for (int file = 0; file < weight_files(basis_size); ++file) maps.push_back({weights_file(file), kWeightPlanes});
+  return maps;
+}
+
+void write_atlas_maps(const fs::path& directory, const Model& model) {
+  write_cluster_map(directory / "cluster.exr", model);
+  write_weights(directory, model);
+  write_exr_colour(directory / "normal.exr", model.normal);
+  write_exr_colour(directory / "uncertainty.exr", model.uncertainty);
+  write_exr_colour(directory / "samples.exr", model.samples);
+}
+
+void read_atlas_maps(const fs::path& directory, int basis_size, Model& model) {
+  read_cluster_map(directory / "cluster.exr", model);
+  read_weights(directory, basis_size, model);
+  read_normals(directory / "normal.exr", model);
+  model.uncertainty = read_map(directory / "uncertainty.exr", model, {"Y"}, 0.0f);
+  model.samples = read_map(directory / "samples.exr", model, {"Y"}, 0.0f);
+}
+
+}  // namespace lumitexel

@@ -1,0 +1,148 @@
+#include "processing/model/basis_file.h"
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "drivers/error.h"
+#include "processing/image/exr_file.h"
+
+namespace lumitexel {
+namespace {
+
+using Json = nlohmann::ordered_json;  // keys stay in the order written: the file is meant to be read
+
+constexpr double kMinLogExponent = -4.605170185988091;  // ln 1e-2
+constexpr double kMaxLogExponent = 11.512925464970229;  // ln 1e5
+constexpr double kBoundSlack = 1e-9;   // the bounds are rounded logarithms
+constexpr double kAgreement = 1e-6;    // of a natural value with its logarithm; both are printed to full precision
+
+Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json to_json(const LafortuneLobe& lobe) {
+  return {{"peak", finite_or_null(std::exp(lobe.log_peak))},
+          {"phi_rad", lobe.phi},
+          {"exponent", std::exp(lobe.log_exponent)},
+          {"log_peak", finite_or_null(lobe.log_peak)},
+          {"log_exponent", lobe.log_exponent}};
+}
+
+Json to_json(const LafortuneBrdf& brdf) {
+  Json diffuse = Json::array(), lobes = Json::array();
+  const auto channels = static_cast<std::size_t>(brdf.channels);
+  for (std::size_t c = 0; c < channels; ++c) diffuse.push_back(brdf.diffuse[c]);
+  for (const auto& lobe : brdf.lobes) {
+    Json entries = Json::array();
+    for (std::size_t c = 0; c < channels; ++c) entries.push_back(to_json(lobe[c]));
+    lobes.push_back(entries);
+  }
+  return {{"diffuse", diffuse}, {"lobes", lobes}};
+}
+
+// A place in the document that knows its own name, for error messages.
+class Field {
+ public:
+  Field(const Json& value, std::string name) : value_(value), name_(std::move(name)) {}
+
+  Field operator[](const char* key) const {
+    if (!value_.is_object() || !value_.contains(key)) fail("no \"" + std::string(key) + "\"", "that key");
+    return {value_.at(key), name_ + "." + key};
+  }
+  std::vector<Field> elements() const {
+    if (!value_.is_array()) fail(value_.dump(), "an array");
+    std::vector<Field> all;
+    for (std::size_t i = 0; i < value_.size(); ++i) all.emplace_back(value_[i], name_ + "[" + std::to_string(i) + "]");
+    return all;
+  }
+  std::vector<Field> elements(int count) const {
+    std::vector<Field> all = elements();
+    if (all.size() != static_cast<std::size_t>(count)) {
+      fail(std::to_string(all.size()) + " entries", std::to_string(count) + ", one a channel");
+    }
+    return all;
+  }
+  bool is_null() const { return value_.is_null(); }
+  double number(double minimum, double maximum) const {
+    const bool fits = value_.is_number() && value_.get<double>() >= minimum && value_.get<double>() <= maximum;
+    if (!fits) fail(value_.dump(), "a finite number from " + std::to_string(minimum) + " to " + std::to_string(maximum));
+    return value_.get<double>();
+  }
+  double number() const {
+    if (!value_.is_number() || !std::isfinite(value_.get<double>())) fail(value_.dump(), "a finite number");
+    return value_.get<double>();
+  }
+  [[noreturn]] void fail(const std::string& what, const std::string& expected) const {
+    throw BadInput(name_, what, expected);
+  }
+
+ private:
+  const Json& value_;
+  std::string name_;
+};
+
+void check_agreement(const Field& natural, double logarithm) {
+  const double expected = std::exp(logarithm);
+  if (!std::isfinite(expected)) return;  // too large to be written
+  if (!(std::abs(natural.number() - expected) <= kAgreement * expected)) {
+    natural.fail(std::to_string(natural.number()), "the exponential of its logarithm, " + std::to_string(expected));
+  }
+}
+
+LafortuneLobe lobe_from(const Field& field) {
+  LafortuneLobe lobe;
+  const Field log_peak = field["log_peak"];
+  lobe.log_peak = log_peak.is_null() ? -std::numeric_limits<double>::infinity() : log_peak.number();
+  lobe.phi = field["phi_rad"].number();
+  lobe.log_exponent = field["log_exponent"].number(kMinLogExponent - kBoundSlack, kMaxLogExponent + kBoundSlack);
+  check_agreement(field["peak"], lobe.log_peak);
+  check_agreement(field["exponent"], lobe.log_exponent);
+  return lobe;
+}
+
+LafortuneBrdf brdf_from(const Field& field, int channels) {
+  LafortuneBrdf brdf;
+  brdf.channels = channels;
+  std::size_t c = 0;
+  for (const Field& diffuse : field["diffuse"].elements(channels)) {
+    const double kd = diffuse.number();
+    if (kd < 0.0) diffuse.fail(std::to_string(kd), "0 or more");
+    brdf.diffuse[c++] = kd;
+  }
+  for (const Field& entries : field["lobes"].elements()) {
+    auto& lobe = brdf.lobes.emplace_back();
+    c = 0;
+    for (const Field& entry : entries.elements(channels)) lobe[c++] = lobe_from(entry);
+  }
+  return brdf;
+}
+
+}  // namespace
+
+std::string encode_basis(const Model& model) {
+  Json materials = Json::array();
+  for (const ModelMaterial& material : model.materials) {
+    Json basis = Json::array();
+    for (const LafortuneBrdf& brdf : material.basis) basis.push_back(to_json(brdf));
+    materials.push_back({{"brdf", to_json(material.brdf)}, {"basis", basis}});
+  }
+  const Json document = {
+      {"channels", colour_channel_names(model.channels)}, {"single", to_json(model.single)}, {"materials", materials}};
+  return document.dump(1) + "\n";
+}
+
+BasisTable parse_basis(const std::string& text, int channels, const std::string& where) {
+  const Json document = Json::parse(text, nullptr, false);
+  if (document.is_discarded()) throw BadInput(where, "not JSON", "the basis table of a model");
+  const Field root(document, where);
+  root["channels"].elements(channels);
+  BasisTable table;
+  table.single = brdf_from(root["single"], channels);
+  for (const Field& entry : root["materials"].elements()) {
+    ModelMaterial material{brdf_from(entry["brdf"], channels), {}};
+    for (const Field& brdf : entry["basis"].elements()) material.basis.push_back(brdf_from(brdf, channels));
+    table.materials.push_back(std::move(material));
+  }
+  return table;
+}
+
+}  // namespace lumitexel

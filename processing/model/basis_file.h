@@ -1,0 +1,30 @@
+// basis.json: the model's BRDFs as a person reads them, and without loss.
+//
+//   {"channels": ["R","G","B"], "single": BRDF, "materials": [{"brdf": BRDF, "basis": [BRDF, …]}, …]}
+//   BRDF = {"diffuse": [kd per channel, 1/sr], "lobes": [[LOBE per channel], …]}
+//   LOBE = {"peak": A (1/sr), "phi_rad", "exponent": N, "log_peak": ln A, "log_exponent": ln N}
+//
+// in the parametrisation of processing/brdf/lafortune.h. The two logarithms are what is read back, to the last bit;
+// peak and exponent say the same for the reader's eye, null where they overflow. log_peak is null for a lobe that is
+// switched off (minus infinity).
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "processing/model/model.h"
+
+namespace lumitexel {
+
+struct BasisTable {
+  LafortuneBrdf single;
+  std::vector<ModelMaterial> materials;
+};
+
+std::string encode_basis(const Model& model);
+// Throws BadInput naming `where` and the field for anything missing, of the wrong type or number of channels, negative
+// (diffuse), not finite, outside N in [1e-2, 1e5], or where peak or exponent contradict their logarithms.
+BasisTable parse_basis(const std::string& text, int channels, const std::string& where);
+
+}  // namespace lumitexel

@@ -1,0 +1,214 @@
+#include "processing/model/model_file.h"
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <system_error>
+
+#include "drivers/error.h"
+#include "processing/image/exr_file.h"
+#include "processing/model/atlas_maps.h"
+#include "processing/model/basis_file.h"
+#include "processing/surface/mesh_file.h"
+
+namespace lumitexel {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kFormat = "lumitexel model";
+constexpr int kVersion = 1;
+constexpr int kLargestAtlas = 1 << 15;    // a side of more than this is a damaged number, not an atlas
+std::string read_text(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw BadInput(path.string(), "missing or unreadable", "a file of the model");
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) throw Error(path.string() + ": could not be written");
+}
+
+// ---- writing
+
+Json model_json(const Model& model) {
+  const Json provenance = Json::parse(model.provenance_json, nullptr, false);
+  if (!provenance.is_object()) throw Error("model: its provenance is not a JSON object");
+  Json maps = Json::object();
+  for (const AtlasMap& map : atlas_maps(model.weights.channels)) maps[map.file] = map.channels;
+  return {{"format", kFormat},
+          {"version", kVersion},
+          {"channels", colour_channel_names(model.channels)},
+          {"atlas", {{"width", model.width}, {"height", model.height}}},
+          {"materials", model.materials.size()},
+          {"basis_size", model.weights.channels},
+          {"maps", maps},
+          {"provenance", provenance}};
+}
+
+void require_consistent(const Model& model) {
+  const auto fits = [&](const Image& map, int channels) {
+    return map.width == model.width && map.height == model.height && map.channels == channels &&
+           map.data.size() == model.material.size() * static_cast<std::size_t>(channels);
+  };
+  std::size_t basis_size = 0;
+  for (const ModelMaterial& material : model.materials) basis_size = std::max(basis_size, material.basis.size());
+  const std::size_t texels = static_cast<std::size_t>(model.width) * static_cast<std::size_t>(model.height);
+  if (model.material.size() != texels || model.mesh.texcoords.size() != model.mesh.positions.size() ||
+      !fits(model.weights, static_cast<int>(basis_size)) || !fits(model.normal, 3) || !fits(model.uncertainty, 1) ||
+      !fits(model.samples, 1)) {
+    throw Error("model: maps, mesh and basis do not fit together");
+  }
+}
+
+void write_files(const fs::path& directory, const Model& model) {
+  write_text(directory / "basis.json", encode_basis(model));
+  write_atlas_maps(directory, model);
+  write_ply(directory / "mesh.ply", model.mesh);
+  write_text(directory / "model.json", model_json(model).dump(1) + "\n");
+}
+
+bool is_model(const fs::path& directory) {
+  std::ifstream file(directory / "model.json", std::ios::binary);
+  const Json document = Json::parse(file, nullptr, false);
+  return document.is_object() && document.contains("format") && document.at("format") == kFormat;
+}
+
+// "out/bird/" and "out/bird" are the same folder; its sibling's name must not land inside it.
+fs::path without_trailing_slash(const fs::path& directory) {
+  const fs::path absolute = fs::absolute(directory).lexically_normal();
+  return absolute.has_filename() ? absolute : absolute.parent_path();
+}
+
+fs::path sibling(const fs::path& target, const std::string& suffix) {
+  return target.parent_path() / ("." + target.filename().string() + suffix);
+}
+
+void replace_directory(const fs::path& fresh, const fs::path& target) {
+  const fs::path old = sibling(target, ".replaced");
+  fs::remove_all(old);
+  if (fs::exists(target)) fs::rename(target, old);
+  fs::rename(fresh, target);
+  fs::remove_all(old);
+}
+
+// ---- reading
+
+// What the evaluation and the report look up; everything else in the provenance is the fit's own affair.
+struct ProvenanceType {
+  const char* key;
+  bool (*is_right)(const Json&);
+  const char* expected;
+};
+constexpr ProvenanceType kProvenanceTypes[] = {
+    {"session_key", [](const Json& value) { return value.is_string(); }, "a string"},
+    {"rms", [](const Json& value) { return value.is_object(); }, "an object, one number a stage"},
+    {"rms_by_channel", [](const Json& value) { return value.is_object(); }, "an object, one list a stage"},
+    {"rms_by_material", [](const Json& value) { return value.is_object(); }, "an object, one list a stage"},
+    {"stages", [](const Json& value) { return value.is_array(); }, "a list, one entry a stage"},
+    {"options", [](const Json& value) { return value.is_object(); }, "an object"},
+};
+
+struct ModelHeader {
+  Model model;  // channels, width, height, provenance
+  int materials = 0, basis_size = 0;
+};
+
+int int_field(const Json& parent, const char* key, int minimum, int maximum, const std::string& where) {
+  const std::string name = where + ": " + key;
+  if (!parent.is_object() || !parent.contains(key)) throw BadInput(name, "missing", "an integer");
+  const Json& value = parent.at(key);
+  const bool fits = value.is_number_integer() && value.get<std::int64_t>() >= minimum && value.get<std::int64_t>() <= maximum;
+  if (!fits) throw BadInput(name, value.dump(), "an integer from " + std::to_string(minimum) + " to " + std::to_string(maximum));
+  return value.get<int>();
+}
+
+ModelHeader parse_header(const std::string& text, const std::string& where) {
+  const Json document = Json::parse(text, nullptr, false);
+  const bool ours = document.is_object() && document.contains("format") && document.at("format") == kFormat;
+  if (!ours) throw BadInput(where, "no \"format\": \"" + std::string(kFormat) + "\"", "the description of a model");
+  int_field(document, "version", kVersion, kVersion, where);
+  ModelHeader header;
+  const Json channels = document.value("channels", Json());
+  header.model.channels = channels.is_array() ? static_cast<int>(channels.size()) : 0;
+  if (header.model.channels != 1 && header.model.channels != kMaxChannels) {
+    throw BadInput(where + ": channels", channels.dump(), "the names of one or three channels");
+  }
+  const Json atlas = document.value("atlas", Json());
+  header.model.width = int_field(atlas, "width", 1, kLargestAtlas, where + ": atlas");
+  header.model.height = int_field(atlas, "height", 1, kLargestAtlas, where + ": atlas");
+  header.materials = int_field(document, "materials", 0, std::numeric_limits<std::int16_t>::max(), where);
+  header.basis_size = int_field(document, "basis_size", 0, 1000, where);
+  const Json provenance = document.value("provenance", Json());
+  if (!provenance.is_object()) throw BadInput(where + ": provenance", provenance.dump(), "an object");
+  for (const auto& [key, is_right, expected] : kProvenanceTypes) {
+    if (provenance.contains(key) && !is_right(provenance.at(key))) {
+      throw BadInput(where + ": provenance." + key, provenance.at(key).dump(), expected);
+    }
+  }
+  header.model.provenance_json = provenance.dump();
+  return header;
+}
+
+void read_basis(const fs::path& path, const ModelHeader& header, Model& model) {
+  BasisTable table = parse_basis(read_text(path), model.channels, path.string());
+  std::size_t basis_size = 0;
+  for (const ModelMaterial& material : table.materials) basis_size = std::max(basis_size, material.basis.size());
+  if (table.materials.size() != static_cast<std::size_t>(header.materials)) {
+    throw BadInput(path.string() + ".materials", std::to_string(table.materials.size()) + " entries",
+                   std::to_string(header.materials) + " as model.json says");
+  }
+  if (basis_size != static_cast<std::size_t>(header.basis_size)) {
+    throw BadInput(path.string() + ".materials", "a largest basis of " + std::to_string(basis_size),
+                   std::to_string(header.basis_size) + " as model.json says");
+  }
+  model.single = std::move(table.single);
+  model.materials = std::move(table.materials);
+}
+
+}  // namespace
+
+void write_model(const fs::path& directory, const Model& model) {
+  const fs::path target = without_trailing_slash(directory);
+  if (fs::exists(target) && !is_model(target) && !(fs::is_directory(target) && fs::is_empty(target))) {
+    throw BadInput(directory.string(), "exists and is not a model", "a new folder or a model to replace");
+  }
+  require_consistent(model);
+  const fs::path fresh = sibling(target, ".writing");
+  try {
+    fs::remove_all(fresh);
+    fs::create_directories(fresh);
+    write_files(fresh, model);
+    replace_directory(fresh, target);
+  } catch (const fs::filesystem_error& error) {
+    throw Error(directory.string() + ": could not be written: " + error.code().message());
+  } catch (const Error&) {
+    std::error_code ignored;
+    fs::remove_all(fresh, ignored);
+    throw;
+  }
+}
+
+Model read_model(const fs::path& directory) {
+  if (!fs::is_directory(directory)) throw BadInput(directory.string(), "no such folder", "the folder of a model");
+  const fs::path description = directory / "model.json";
+  ModelHeader header = parse_header(read_text(description), description.string());
+  Model model = std::move(header.model);
+  read_basis(directory / "basis.json", header, model);
+  read_atlas_maps(directory, header.basis_size, model);
+  model.mesh = read_mesh(directory / "mesh.ply");
+  if (model.mesh.texcoords.size() != model.mesh.positions.size()) {
+    throw BadInput((directory / "mesh.ply").string(), "no texture coordinates", "s and t at every vertex");
+  }
+  return model;
+}
+
+}  // namespace lumitexel

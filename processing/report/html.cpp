@@ -1,0 +1,102 @@
+#include "processing/report/html.h"
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+
+#include "processing/image/raster_file.h"
+
+namespace lumitexel::html {
+namespace {
+
+std::string base64(const std::string& bytes) {
+  constexpr const char* kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t start = 0; start < bytes.size(); start += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - start);
+    std::uint32_t group = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      group = group << 8 | (i < count ? static_cast<unsigned char>(bytes[start + i]) : 0u);
+    }
+    for (std::size_t i = 0; i < 4; ++i) text += i <= count ? kAlphabet[group >> (18 - 6 * i) & 63] : '=';
+  }
+  return text;
+}
+
+// "</script>" inside a string would end the block; "<\/" means the same to JSON and nothing to HTML.
+std::string safe_in_script(const std::string& json) {
+  std::string text;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    text += json[i];
+    if (json[i] == '<' && i + 1 < json.size() && json[i + 1] == '/') text += '\\';
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string escaped(const std::string& text) {
+  std::string safe;
+  for (const char letter : text) {
+    switch (letter) {
+      case '&': safe += "&amp;"; break;
+      case '<': safe += "&lt;"; break;
+      case '>': safe += "&gt;"; break;
+      case '"': safe += "&quot;"; break;
+      default: safe += letter;
+    }
+  }
+  return safe;
+}
+
+std::string number(double value, int digits) {
+  if (!std::isfinite(value)) return "–";
+  char text[40];
+  const double magnitude = std::abs(value);
+  if (value != 0.0 && (magnitude < 1e-4 || magnitude >= 1e7)) {
+    std::snprintf(text, sizeof text, "%.*e", digits - 1, value);
+    return text;
+  }
+  const int before_point = magnitude >= 1.0 ? static_cast<int>(std::floor(std::log10(magnitude))) + 1 : 0;
+  const int leading_zeros = magnitude > 0.0 && magnitude < 1.0 ? -static_cast<int>(std::floor(std::log10(magnitude))) - 1 : 0;
+  const int decimals = value == std::floor(value) ? 0 : std::max(0, digits - before_point + leading_zeros);
+  std::snprintf(text, sizeof text, "%.*f", decimals, value);
+  return text;
+}
+
+std::string picture(const Image& unit_values, const std::string& description) {
+  return "<img alt=\"" + escaped(description) + "\" width=\"" + std::to_string(unit_values.width) + "\" height=\"" +
+         std::to_string(unit_values.height) + "\" src=\"data:image/png;base64," + base64(encode_png8(unit_values)) + "\">";
+}
+
+std::string figure(const std::string& picture_markup, const std::string& caption) {
+  return "<figure>" + picture_markup + "<figcaption>" + escaped(caption) + "</figcaption></figure>\n";
+}
+
+std::string table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows) {
+  std::string text = "<div class=\"scroll\"><table><thead><tr>";
+  for (const std::string& cell : header) text += "<th>" + escaped(cell) + "</th>";
+  text += "</tr></thead><tbody>\n";
+  for (const auto& row : rows) {
+    text += "<tr>";
+    for (const std::string& cell : row) text += "<td>" + escaped(cell) + "</td>";
+    text += "</tr>\n";
+  }
+  return text + "</tbody></table></div>\n";
+}
+
+std::string section(const std::string& title, const std::string& introduction, const std::string& body) {
+  return "<section><h2>" + escaped(title) + "</h2>\n<p>" + escaped(introduction) + "</p>\n" + body + "</section>\n";
+}
+
+std::string page(const std::string& title, const std::string& style, const std::string& body,
+                 const std::string& data_json) {
+  return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
+         escaped(title) + "</title>\n<style>\n" + style + "</style></head>\n<body><main>\n" + body +
+         "</main>\n<script type=\"application/json\" id=\"data\">" + safe_in_script(data_json) +
+         "</script>\n</body></html>\n";
+}
+
+}  // namespace lumitexel::html

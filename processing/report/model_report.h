@@ -1,0 +1,26 @@
+// What a fit found, as one page for people: a single HTML file that needs nothing else, not even a network.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "processing/calibration/calibrated_session.h"
+#include "processing/model/evaluate_model.h"
+#include "processing/model/model.h"
+#include "rig/progress.h"
+
+namespace lumitexel {
+
+struct ReportSubject {
+  std::string name;  // what the page is titled with, e.g. the model's folder
+  const Model& model;
+  // The photographs to compare with, and what the comparison found; without them the page says what is left out.
+  const CalibratedSession* session = nullptr;
+  const Evaluation* evaluation = nullptr;
+};
+
+// The page. Every number on it is also in its <script type="application/json" id="data">: {"evaluation": as
+// `lumitexel evaluate --json` or null, "provenance": the fit's, "texels_by_material": [...]}.
+std::string model_report(const ReportSubject& subject, Progress& progress);
+
+}  // namespace lumitexel

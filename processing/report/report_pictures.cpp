@@ -1,0 +1,141 @@
+#include <cstdio>
+
+#include "processing/image/tone_map.h"
+#include "processing/report/html.h"
+#include "processing/report/material_pictures.h"
+#include "processing/report/plan_drawing.h"
+#include "processing/report/report_sections.h"
+#include "processing/report/view_pictures.h"
+
+namespace lumitexel {
+namespace {
+
+constexpr int kPictureWidth_px = 460;
+constexpr int kSphereSize_px = 180;
+constexpr int kMapSize_px = 520;
+constexpr std::size_t kMostComparisons = 8;  // a page that still opens at once
+
+std::string css_colour(const std::array<float, 3>& colour) {
+  char text[40];
+  std::snprintf(text, sizeof text, "rgb(%.0f,%.0f,%.0f)", 255.0 * colour[0], 255.0 * colour[1], 255.0 * colour[2]);
+  return text;
+}
+
+std::string difference_scale() {
+  const std::string percent = html::number(100.0 * kDifferenceRange);
+  return "<div class=\"scale\"><div class=\"bar\" style=\"background:linear-gradient(to right," +
+         css_colour(false_colour(-1.0)) + "," + css_colour(false_colour(0.0)) + "," + css_colour(false_colour(1.0)) +
+         ")\"></div><div class=\"ends\"><span>rendering darker by " + percent + " % of white</span><span>equal</span>" +
+         "<span>brighter by " + percent + " %</span></div></div>\n";
+}
+
+std::vector<std::size_t> views_to_show(const std::vector<View>& views) {
+  std::vector<std::size_t> heldout, fit;
+  for (std::size_t i = 0; i < views.size(); ++i) (views[i].heldout ? heldout : fit).push_back(i);
+  std::vector<std::size_t>& shown = heldout.empty() ? fit : heldout;
+  if (shown.size() > kMostComparisons) shown.resize(kMostComparisons);
+  return shown;
+}
+
+std::string comparison(const View& view, const ViewPictures& pictures, const ViewEvaluation& evaluation) {
+  const std::string figures = "relative RMS " + html::number(evaluation.error.relative_rms) + ", PSNR " +
+                              html::number(evaluation.error.psnr_db) + " dB";
+  return "<h3>" + html::escaped(view.name) + (view.heldout ? " (held out)" : " (used in the fit)") + "</h3><div class=\"row\">" +
+         html::figure(html::picture(pictures.photograph, "photograph " + view.name),
+                      "Photograph; white is radiance " + html::number(pictures.white)) +
+         html::figure(html::picture(pictures.rendering, "rendering of " + view.name), "Rendering, same exposure; " + figures) +
+         html::figure(html::picture(pictures.difference, "difference in " + view.name), "Rendering minus photograph") +
+         "</div>\n";
+}
+
+View map_view(const ReportSubject& subject) {
+  if (subject.session != nullptr && !subject.session->views.empty()) {
+    return subject.session->views[views_to_show(subject.session->views).front()];
+  }
+  return framing_view(subject.model.mesh, subject.model.channels, kMapSize_px, {0.4, -1.0, 0.5}, Eigen::Vector3d::UnitZ());
+}
+
+std::string lobe_text(const LafortuneBrdf& brdf) {
+  std::string text = "diffuse albedo ";
+  for (int c = 0; c < brdf.channels; ++c) {
+    text += (c > 0 ? " / " : "") + html::number(3.141592653589793 * brdf.diffuse[static_cast<std::size_t>(c)], 2);
+  }
+  for (const auto& lobe : brdf.lobes) {
+    text += "; lobe peak ";
+    for (int c = 0; c < brdf.channels; ++c) {
+      text += (c > 0 ? " / " : "") + html::number(std::exp(lobe[static_cast<std::size_t>(c)].log_peak), 2);
+    }
+    text += " 1/sr, exponent ";
+    for (int c = 0; c < brdf.channels; ++c) {
+      text += (c > 0 ? " / " : "") + html::number(std::exp(lobe[static_cast<std::size_t>(c)].log_exponent), 2);
+    }
+  }
+  return text;
+}
+
+std::string sphere_figures(const Model& model) {
+  std::vector<Image> spheres;
+  for (const ModelMaterial& material : model.materials) spheres.push_back(material_sphere(material.brdf, kSphereSize_px));
+  const double white = sphere_white(spheres);
+  const auto texels = texels_by_material(model);
+  double total = 0.0;
+  for (const std::int64_t count : texels) total += static_cast<double>(count);
+  std::string text = "<div class=\"swatches\">";
+  for (std::size_t m = 0; m < spheres.size(); ++m) {
+    const std::string share = html::number(100.0 * static_cast<double>(texels[m]) / total, 2);
+    text += "<figure>" + html::picture(tone_mapped(spheres[m], white), "sphere of material " + std::to_string(m)) +
+            "<figcaption><span class=\"key\" style=\"background:" + css_colour(material_colour(static_cast<int>(m))) +
+            "\"></span>" +
+            html::escaped("Material " + std::to_string(m) + ", " + share + " % of the texels; " +
+                          lobe_text(model.materials[m].brdf)) +
+            "</figcaption></figure>\n";
+  }
+  return text + "</div>\n";
+}
+
+}  // namespace
+
+std::string comparison_section(const ReportSubject& subject, const ViewRenderer& renderer, Progress& progress) {
+  const auto& views = subject.session->views;
+  const std::vector<std::size_t> shown = views_to_show(views);
+  const bool heldout = !shown.empty() && views[shown.front()].heldout;
+  std::string body = difference_scale();
+  progress.begin("picture comparisons", static_cast<std::int64_t>(shown.size()), "views");
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const View& view = views[shown[i]];
+    const ViewPictures pictures =
+        make_view_pictures(renderer, view, subject.model.channels, subject.evaluation->last_stage, kPictureWidth_px);
+    body += comparison(view, pictures, subject.evaluation->views[shown[i]]);
+    progress.update(static_cast<std::int64_t>(i + 1));
+  }
+  const std::string what = heldout
+      ? "These photographs were kept out of the fit: the model had to predict them from the others. "
+      : "No photograph was kept out of the fit, so these only show how well the model repeats what it has seen. ";
+  return html::section(heldout ? "Photographs the model never saw" : "Photographs and their re-renderings",
+                       what + "Photograph and rendering are shown at one exposure, chosen so that the photograph's 99th "
+                              "percentile is white, on the sRGB curve; pixels that were not compared are black.",
+                       body);
+}
+
+std::string material_section(const ReportSubject& subject, const ViewRenderer& renderer) {
+  const std::string map = html::figure(html::picture(material_map(renderer, map_view(subject)), "map of the materials"),
+                                       "Every texel in the colour of its material; gray where nothing was measured.");
+  return html::section(
+      "Materials",
+      "The fit sorted the surface into materials by how it reflects light. Each is shown as a sphere of that material's "
+      "mean reflectance under one light from above left, all at one exposure. On the object itself every texel mixes its "
+      "material's basis and so varies about this mean. An ideal white surface has albedo 1.",
+      "<div class=\"row\"><div>" + map + "</div><div style=\"grid-column: span 2\">" + sphere_figures(subject.model) +
+          "</div></div>\n");
+}
+
+std::string setup_section(const CalibratedSession& session) {
+  return html::section(
+      "Cameras and lights",
+      "Where the camera (triangles) and the light (circles) stood for each photograph, in the object's frame. Blue: used in "
+      "the fit. Brown: held out. Point at a mark to read its photograph's name. Directional lights are drawn at the rim.",
+      "<div class=\"row\">" + html::figure(plan_drawing(session, 0, 1), "Along the world's z axis") +
+          html::figure(plan_drawing(session, 0, 2), "Along the world's y axis") + "</div>\n");
+}
+
+}  // namespace lumitexel

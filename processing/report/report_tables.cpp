@@ -1,0 +1,190 @@
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "processing/image/exr_file.h"
+#include "processing/report/html.h"
+#include "processing/report/report_sections.h"
+
+namespace lumitexel {
+namespace {
+
+using Json = nlohmann::json;
+
+const char* stage_title(const std::string& stage) {
+  if (stage == "single") return "one BRDF for all (1-RMS)";
+  if (stage == "cluster") return "one BRDF a material (C-RMS)";
+  if (stage == "projection") return "a mixture a texel (P-RMS)";
+  return "";
+}
+
+double number_or_nan(const Json& parent, const std::string& key) {
+  return parent.is_object() && parent.contains(key) && parent.at(key).is_number() ? parent.at(key).get<double>() : NAN;
+}
+
+std::string tile(const std::string& value, const std::string& meaning) {
+  return "<div class=\"tile\"><b>" + html::escaped(value) + "</b><span>" + html::escaped(meaning) + "</span></div>\n";
+}
+
+double total_seconds(const Json& provenance) {
+  double sum = 0.0;
+  for (const Json& stage : provenance.value("stages", Json::array())) sum += number_or_nan(stage, "seconds");
+  return sum;
+}
+
+// Rows: one a stage. Columns: the entries of the stage's list.
+std::string table_by_stage(const Json& lists, const std::vector<std::string>& names) {
+  std::vector<std::string> header{"stage"};
+  header.insert(header.end(), names.begin(), names.end());
+  std::vector<std::vector<std::string>> rows;
+  for (const FitStage stage : kFitStages) {
+    const std::string key = to_string(stage);
+    if (!lists.is_object() || !lists.contains(key) || !lists.at(key).is_array()) continue;
+    std::vector<std::string> row{stage_title(key)};
+    for (const Json& value : lists.at(key)) row.push_back(value.is_number() ? html::number(value.get<double>()) : "–");
+    row.resize(header.size(), "–");
+    rows.push_back(row);
+  }
+  return rows.empty() ? "" : html::table(header, rows);
+}
+
+std::size_t longest_list(const Json& lists) {
+  std::size_t longest = 0;
+  if (lists.is_object()) {
+    for (const auto& [key, list] : lists.items()) longest = std::max(longest, list.is_array() ? list.size() : 0);
+  }
+  return longest;
+}
+
+std::vector<std::string> error_row(const std::string& name, const ImageError& error) {
+  return {name, html::number(error.relative_rms), html::number(error.clipped_rms), html::number(error.sqrt_rms),
+          html::number(error.psnr_db)};
+}
+
+std::string error_table(const std::string& title, const ErrorByStage& errors) {
+  std::vector<std::vector<std::string>> rows;
+  for (const FitStage stage : kFitStages) {
+    const auto& error = errors[static_cast<std::size_t>(stage)];
+    if (error && std::isfinite(error->relative_rms)) rows.push_back(error_row(stage_title(to_string(stage)), *error));
+  }
+  if (rows.empty()) return "";
+  return "<h3>" + html::escaped(title) + "</h3>" +
+         html::table({"stage", "relative RMS", "clipped", "square roots", "PSNR (dB)"}, rows);
+}
+
+std::string bars(const Json& stages, const std::string& key, double unit, const std::string& unit_name,
+                 const std::string& css_class) {
+  double largest = 0.0;
+  for (const Json& stage : stages) largest = std::max(largest, number_or_nan(stage, key));
+  if (!(largest > 0.0)) return "";
+  std::string text = "<div class=\"bars\">";
+  for (const Json& stage : stages) {
+    const double value = number_or_nan(stage, key);
+    const double percent = std::isfinite(value) ? 100.0 * value / largest : 0.0;
+    text += "<span>" + html::escaped(stage.value("name", "?")) + "</span><div class=\"track\"><div class=\"fill " + css_class +
+            "\" style=\"width:" + html::number(percent, 3) + "%\"></div></div><span class=\"value\">" +
+            html::number(value / unit) + " " + unit_name + "</span>\n";
+  }
+  return text + "</div>\n";
+}
+
+}  // namespace
+
+std::vector<std::int64_t> texels_by_material(const Model& model) {
+  std::vector<std::int64_t> counts(model.materials.size());
+  for (const std::int16_t material : model.material) {
+    if (material != Model::kNoMaterial) ++counts[static_cast<std::size_t>(material)];
+  }
+  return counts;
+}
+
+std::string headline(const ReportSubject& subject, const Json& provenance) {
+  std::int64_t texels = 0;
+  for (const std::int64_t count : texels_by_material(subject.model)) texels += count;
+  const Json rms = provenance.value("rms", Json::object());
+  const double ratio = number_or_nan(rms, "projection") / number_or_nan(rms, "single");
+  std::string text =
+      "<header><h1>" + html::escaped(subject.name) + "</h1>\n<p>How the surface of this object reflects light, measured "
+      "from photographs under a moving lamp. Every point of the surface has its own reflectance, so the object can be shown "
+      "from any side under any light. This page says what was found and how far it can be trusted.</p>\n<div class=\"tiles\">";
+  text += tile(std::to_string(subject.model.materials.size()), "materials found");
+  text += tile(std::to_string(texels), "texels (surface points) with a reflectance");
+  text += tile(html::number(number_or_nan(provenance, "samples"), 8), "reflectance samples the fit used");
+  text += tile(html::number(ratio), "error left of that of a single material (P-RMS / 1-RMS); smaller is better");
+  if (subject.evaluation != nullptr) {
+    const auto& heldout = subject.evaluation->heldout[static_cast<std::size_t>(subject.evaluation->last_stage)];
+    text += tile(html::number(heldout->relative_rms), "relative RMS error on photographs kept out of the fit");
+    text += tile(html::number(heldout->psnr_db) + " dB", "PSNR on photographs kept out of the fit");
+  }
+  text += tile(html::number(total_seconds(provenance)) + " s", "computing time of the fit");
+  return text + "</div></header>\n";
+}
+
+std::string sample_error_section(const Json& provenance) {
+  const Json rms = provenance.value("rms", Json::object());
+  std::vector<std::vector<std::string>> rows;
+  for (const FitStage stage : kFitStages) {
+    const double value = number_or_nan(rms, to_string(stage));
+    if (std::isfinite(value)) {
+      rows.push_back({stage_title(to_string(stage)), html::number(value), html::number(value / number_or_nan(rms, "single"))});
+    }
+  }
+  std::string body = html::table({"stage", "RMS of r", "share of 1-RMS"}, rows);
+  const Json channels = provenance.value("rms_by_channel", Json::object());
+  std::vector<std::string> names;
+  for (std::size_t c = 0; c < longest_list(channels); ++c) {
+    const auto known = colour_channel_names(static_cast<int>(longest_list(channels)));
+    names.push_back(c < known.size() ? known[c] : std::to_string(c));
+  }
+  const std::string by_channel = table_by_stage(channels, names);
+  if (!by_channel.empty()) body += "<h3>By colour channel</h3>" + by_channel;
+  const Json materials = provenance.value("rms_by_material", Json::object());
+  names.clear();
+  for (std::size_t m = 0; m < longest_list(materials); ++m) names.push_back("material " + std::to_string(m));
+  const std::string by_material = table_by_stage(materials, names);
+  if (!by_material.empty()) body += "<h3>By material</h3>" + by_material;
+  return html::section("How well the measurements are explained",
+                       "Root mean square difference between predicted and measured reflectance r = f cos, over all samples the "
+                       "fit used and all channels, after each stage. Each stage starts from the one above it.",
+                       body);
+}
+
+std::string photograph_error_section(const Evaluation& evaluation) {
+  std::vector<std::vector<std::string>> rows;
+  for (const ViewEvaluation& view : evaluation.views) {
+    std::vector<std::string> row = error_row(view.image, view.error);
+    row.insert(row.begin() + 1, view.heldout ? "held out" : "fit");
+    rows.push_back(row);
+  }
+  std::string note = "Whole pictures re-rendered and compared with the photographs, over the object's pixels. A model can learn "
+                     "the photographs of the fit by heart; only those kept out tell how it does in a new view and light.";
+  if (!evaluation.same_session) note += " The model was fitted to another session than the one it is compared with here.";
+  return html::section("How well photographs are predicted", note,
+                       error_table("Photographs kept out of the fit", evaluation.heldout) +
+                           error_table("Photographs used in the fit", evaluation.fit) + "<h3>Each photograph</h3>" +
+                           html::table({"photograph", "role", "relative RMS", "clipped", "square roots", "PSNR (dB)"}, rows));
+}
+
+std::string timing_section(const Json& provenance) {
+  const Json stages = provenance.value("stages", Json::array());
+  if (stages.empty()) return "";
+  constexpr double kMebibyte = 1024.0 * 1024.0;
+  return html::section("What it took", "Wall time and the process's peak memory at the end of each stage of the fit.",
+                       "<h3>Time</h3>" + bars(stages, "seconds", 1.0, "s", "time") + "<h3>Peak memory</h3>" +
+                           bars(stages, "peak_bytes", kMebibyte, "MiB", "memory"));
+}
+
+std::string definitions_section() {
+  return html::section(
+      "What the figures mean", "All comparisons are made in linear radiance, before any tone curve.",
+      html::table({"figure", "definition"},
+                  {{"relative RMS", "RMS of rendering minus photograph, divided by the RMS of the photograph"},
+                   {"clipped", "the same, both clipped at the photograph's 99.9th percentile, so that a few highlights do not decide"},
+                   {"square roots", "the same on square roots, closer to how differences look"},
+                   {"PSNR", "peak signal to noise in decibels; the peak is the photograph's 99.9th percentile"},
+                   {"several photographs", "the pixels of all are pooled, each photograph with its own percentile"}}) +
+          "<p>Pixels that saturated or were defective, and those outside the object's mask, are left out. Where the mesh misses an "
+          "object pixel, the rendering counts as black. Every number on this page is also in its JSON block (id “data”).</p>");
+}
+
+}  // namespace lumitexel

@@ -1,0 +1,61 @@
+#include <map>
+#include <memory>
+#include <sstream>
+
+#include "rig/capture_estimate.h"
+#include "rig/console/command.h"
+#include "rig/console/duration_text.h"
+#include "rig/whole_file.h"
+#include "rig/schedule.h"
+
+namespace lumitexel {
+namespace {
+
+struct PlanOptions {
+  std::string rig, plan;
+};
+
+std::string summary_text(const CapturePlan& plan, const RigDescription& rig, const std::vector<Shot>& shots,
+                         const CaptureEstimate& estimate) {
+  std::map<ShotKind, int> per_kind;
+  for (const Shot& shot : shots) ++per_kind[shot.kind];
+  std::ostringstream text;
+  text << plan.name << " on " << rig.name << ": " << plan.views.size() << " views, " << shots.size() << " shots\n";
+  for (const auto& [kind, count] : per_kind) text << "  " << count << " " << to_string(kind) << "\n";
+  text << "estimate    " << duration_text(estimate.estimate_s) << " (exposure " << duration_text(estimate.exposure_s)
+       << ", readout " << duration_text(estimate.readout_s) << ", motion " << duration_text(estimate.motion_s) << ")\n"
+       << "lower bound " << duration_text(estimate.lower_bound_s) << " (motion "
+       << duration_text(estimate.shortest_motion_s) << ": all axes at once, no settling)\n"
+       << "storage     " << static_cast<double>(estimate.bytes) / 1e6 << " MB\n";
+  return text.str();
+}
+
+CommandResult run(const PlanOptions& options) {
+  const RigDescription rig = parse_rig(read_whole_file(options.rig), options.rig);
+  const CapturePlan plan = parse_plan(read_whole_file(options.plan), options.plan);
+  const std::vector<Shot> shots = schedule_shots(plan, rig, options.plan);
+  const CaptureEstimate estimate = estimate_capture(shots, rig);
+  CommandResult result;
+  result.json = {{"shots", shots.size()},
+                 {"views", plan.views.size()},
+                 {"estimate_s", estimate.estimate_s},
+                 {"lower_bound_s", estimate.lower_bound_s},
+                 {"exposure_s", estimate.exposure_s},
+                 {"readout_s", estimate.readout_s},
+                 {"motion_s", estimate.motion_s},
+                 {"bytes", estimate.bytes}};
+  result.text = summary_text(plan, rig, shots, estimate);
+  return result;
+}
+
+}  // namespace
+
+void add_plan_command(CLI::App& app, CommandAction& action) {
+  const auto options = std::make_shared<PlanOptions>();
+  CLI::App* command = app.add_subcommand("plan", "Check a plan against a rig and say what it will cost; moves nothing");
+  command->add_option("RIG", options->rig, "Rig description, TOML")->required();
+  command->add_option("PLAN", options->plan, "Capture plan, TOML")->required();
+  command->callback([options, &action] { action = [options](CommandContext&) { return run(*options); }; });
+}
+
+}  // namespace lumitexel

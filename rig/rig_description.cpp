@@ -1,0 +1,187 @@
+#include "rig/rig_description.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "drivers/error.h"
+#include "rig/toml_table.h"
+
+namespace lumitexel {
+namespace {
+
+constexpr int kMostPixels = 65535;  // along an edge; keeps width * height * 2 far inside 64 bits
+constexpr double kParallelSine = 1e-6;
+
+double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
+
+Eigen::Vector3d vector3(const TomlTable& table, const std::string& key) {
+  const std::vector<double> values = table.numbers(key, 3, NumberRange::finite());
+  return {values[0], values[1], values[2]};
+}
+
+Eigen::Vector3d direction(const TomlTable& table, const std::string& key) {
+  const Eigen::Vector3d value = vector3(table, key);
+  if (value.norm() < 1e-9) table.reject(key, "a vector without a direction", "a vector that is not zero");
+  return value.normalized();
+}
+
+void reject_parallel(const TomlTable& table, const std::string& key, const Eigen::Vector3d& up,
+                     const Eigen::Vector3d& axis, const std::string& axis_name) {
+  if (up.cross(axis).norm() < kParallelSine) {
+    table.reject(key, "parallel to " + axis_name, "a direction that differs from " + axis_name);
+  }
+}
+
+CameraLimits read_limits(const TomlTable& table) {
+  CameraLimits limits;
+  limits.width_px = table.integer("width_px", 1, kMostPixels);
+  limits.height_px = table.integer("height_px", 1, kMostPixels);
+  limits.bits = table.integer("bits", 1, 16);
+  try {
+    limits.mosaic = mosaic_from_string(table.string("mosaic"));
+  } catch (const BadInput&) {
+    table.reject("mosaic", table.string("mosaic"), "mono, rggb, bggr, grbg or gbrg");
+  }
+  limits.exposure_min_s = table.number("exposure_min_s", NumberRange::positive());
+  limits.exposure_max_s = table.number("exposure_max_s", NumberRange::positive());
+  if (limits.exposure_max_s < limits.exposure_min_s) {
+    table.reject("exposure_max_s", std::to_string(limits.exposure_max_s), "at least exposure_min_s");
+  }
+  limits.exposure_step_s = table.number("exposure_step_s", NumberRange::between(0.0, limits.exposure_max_s));
+  limits.readout_s = table.number("readout_s", NumberRange::non_negative());
+  return limits;
+}
+
+LensDescription read_lens(const TomlTable& table) {
+  const std::vector<double> focal = table.numbers("focal_px", 2, NumberRange::positive());
+  const std::vector<double> principal = table.numbers("principal_px", 2, NumberRange::finite());
+  const std::vector<double> distortion = table.numbers("distortion", 4, NumberRange::finite());
+  return {focal[0],      focal[1],      principal[0],  principal[1],
+          distortion[0], distortion[1], distortion[2], distortion[3]};
+}
+
+SensorDescription read_sensor(const TomlTable& table, int bits) {
+  SensorDescription sensor;
+  sensor.electrons_per_dn = table.number("electrons_per_dn", NumberRange::positive());
+  sensor.full_well_e = table.number("full_well_e", NumberRange::positive());
+  sensor.read_noise_e = table.number("read_noise_e", NumberRange::non_negative());
+  // A black level at the top of the range would leave no code for light.
+  sensor.black_level_dn = table.number("black_level_dn", NumberRange::between(0.0, std::ldexp(1.0, bits) - 2.0));
+  return sensor;
+}
+
+Eigen::Isometry3d read_camera_pose(const TomlTable& table) {
+  const Eigen::Vector3d position = vector3(table, "position_in_rig_m");
+  const Eigen::Vector3d target = vector3(table, "looks_at_in_rig_m");
+  const Eigen::Vector3d up = direction(table, "up_in_rig");
+  if ((target - position).norm() < 1e-9) {
+    table.reject("looks_at_in_rig_m", "the camera's own position", "a point in front of the camera");
+  }
+  const Eigen::Vector3d forward = (target - position).normalized();
+  reject_parallel(table, "up_in_rig", up, forward, "the viewing direction");
+  const Eigen::Vector3d right = forward.cross(up).normalized();
+  Eigen::Matrix3d rotation;
+  rotation << right.transpose(), forward.cross(right).transpose(), forward.transpose();
+  Eigen::Isometry3d camera_from_rig = Eigen::Isometry3d::Identity();
+  camera_from_rig.linear() = rotation;
+  camera_from_rig.translation() = -rotation * position;
+  return camera_from_rig;
+}
+
+CameraDescription read_camera(const TomlTable& table) {
+  CameraDescription camera;
+  camera.limits = read_limits(table);
+  camera.lens = read_lens(table);
+  camera.sensor = read_sensor(table, camera.limits.bits);
+  camera.camera_from_rig = read_camera_pose(table);
+  table.reject_unread();
+  return camera;
+}
+
+TurntableDescription read_turntable(const TomlTable& table) {
+  TurntableDescription turntable;
+  turntable.axis_point_in_rig = vector3(table, "axis_point_in_rig_m");
+  turntable.axis_direction_in_rig = direction(table, "axis_direction_in_rig");
+  turntable.speed_deg_per_s = table.number("speed_deg_per_s", NumberRange::positive());
+  turntable.settle_s = table.number("settle_s", NumberRange::non_negative());
+  table.reject_unread();
+  return turntable;
+}
+
+LightPositionerDescription read_light_positioner(const TomlTable& table) {
+  LightPositionerDescription arm;
+  arm.pivot_in_rig = vector3(table, "pivot_in_rig_m");
+  arm.radius_m = table.number("radius_m", NumberRange::positive());
+  const auto range = [&](const std::string& key, double limit) {
+    const std::vector<double> values = table.numbers(key, 2, NumberRange::between(-limit, limit));
+    if (values[0] >= values[1]) table.reject(key, "not ascending", "[smallest, largest]");
+    return values;
+  };
+  const std::vector<double> azimuth = range("azimuth_range_deg", 180.0);
+  const std::vector<double> elevation = range("elevation_range_deg", 90.0);
+  arm.azimuth_min_deg = azimuth[0];
+  arm.azimuth_max_deg = azimuth[1];
+  arm.elevation_min_deg = elevation[0];
+  arm.elevation_max_deg = elevation[1];
+  arm.speed_deg_per_s = table.number("speed_deg_per_s", NumberRange::positive());
+  arm.settle_s = table.number("settle_s", NumberRange::non_negative());
+  table.reject_unread();
+  return arm;
+}
+
+SphereLineDescription read_spheres(const TomlTable& table) {
+  SphereLineDescription spheres;
+  spheres.count = table.integer("count", 1, 1000);
+  spheres.radius_m = table.number("radius_m", NumberRange::positive());
+  spheres.spacing_m = table.number("spacing_m", NumberRange::positive());
+  if (spheres.spacing_m < 2.0 * spheres.radius_m) {
+    table.reject("spacing_m", std::to_string(spheres.spacing_m), "at least 2 * radius_m: spheres cannot overlap");
+  }
+  table.reject_unread();
+  return spheres;
+}
+
+GrayCardDescription read_gray_card(const TomlTable& table) {
+  GrayCardDescription card;
+  card.albedo = table.number("albedo", NumberRange::between(1e-6, 1.0));
+  card.size_m = table.number("size_m", NumberRange::positive());
+  card.centre_in_rig = vector3(table, "centre_in_rig_m");
+  card.normal_in_rig = direction(table, "normal_in_rig");
+  card.up_in_rig = direction(table, "up_in_rig");
+  reject_parallel(table, "up_in_rig", card.up_in_rig, card.normal_in_rig, "normal_in_rig");
+  table.reject_unread();
+  return card;
+}
+
+}  // namespace
+
+Eigen::Isometry3d TurntableDescription::rig_from_table(double angle_deg) const {
+  return Eigen::Translation3d(axis_point_in_rig) * Eigen::AngleAxisd(radians(angle_deg), axis_direction_in_rig) *
+         Eigen::Translation3d(-axis_point_in_rig);
+}
+
+Eigen::Vector3d LightPositionerDescription::nominal_position_in_rig(double azimuth_deg, double elevation_deg) const {
+  const double azimuth = radians(azimuth_deg), elevation = radians(elevation_deg);
+  return pivot_in_rig + radius_m * Eigen::Vector3d(std::cos(elevation) * std::cos(azimuth),
+                                                   std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+}
+
+RigDescription parse_rig(const std::string& toml_text, const std::string& where) {
+  const TomlTable table = TomlTable::parse(toml_text, where);
+  RigDescription rig;
+  rig.name = table.string("name");
+  rig.backend = table.string("backend");
+  rig.camera = read_camera(table.table("camera"));
+  rig.turntable = read_turntable(table.table("turntable"));
+  rig.light_positioner = read_light_positioner(table.table("light_positioner"));
+  const TomlTable ring = table.table("ring_flash");
+  rig.ring_flash.radius_m = ring.number("radius_m", NumberRange::positive());
+  ring.reject_unread();
+  rig.spheres = read_spheres(table.table("spheres"));
+  rig.gray_card = read_gray_card(table.table("gray_card"));
+  if (table.has("simulation")) rig.simulation_toml = table.text_of("simulation");
+  table.reject_unread();
+  return rig;
+}
+
+}  // namespace lumitexel

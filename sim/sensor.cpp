@@ -1,0 +1,77 @@
+#include "sim/sensor.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sim/seeded_random.h"
+
+namespace lumitexel {
+namespace {
+
+constexpr std::uint64_t kHotPixelStream = 400;
+
+}  // namespace
+
+int mosaic_channel(Mosaic mosaic, int x, int y) {
+  const std::size_t place = static_cast<std::size_t>((y & 1) * 2 + (x & 1));
+  switch (mosaic) {
+    case Mosaic::Mono: return -1;
+    case Mosaic::Rggb: return std::array{0, 1, 1, 2}[place];
+    case Mosaic::Bggr: return std::array{2, 1, 1, 0}[place];
+    case Mosaic::Grbg: return std::array{1, 0, 2, 1}[place];
+    case Mosaic::Gbrg: return std::array{1, 2, 0, 1}[place];
+  }
+  return -1;
+}
+
+SimulatedSensor::SimulatedSensor(const CameraDescription& camera, const SimulationSettings& settings)
+    : camera_(camera), settings_(settings) {}
+
+bool SimulatedSensor::is_hot(int x, int y) const {
+  const auto pixel = static_cast<std::uint64_t>(y * camera_.limits.width_px + x);
+  return CounterRandom(extended_key(settings_.seed, kHotPixelStream), pixel).uniform() < settings_.hot_pixel_fraction;
+}
+
+double SimulatedSensor::dark_current_e_per_s(int x, int y) const {
+  const double warmth = std::exp2((settings_.sensor_temperature_c - 20.0) / settings_.dark_current_doubling_k);
+  double at_20_c = settings_.dark_current_e_per_s;
+  if (is_hot(x, y)) {
+    const auto pixel = static_cast<std::uint64_t>(y * camera_.limits.width_px + x);
+    CounterRandom random(extended_key(settings_.seed, kHotPixelStream + 1), pixel);
+    at_20_c -= settings_.hot_pixel_current_e_per_s * std::log(random.uniform());
+  }
+  return at_20_c * warmth;
+}
+
+double SimulatedSensor::radiance_seen(const Image& radiance, int x, int y) const {
+  const int channel = mosaic_channel(camera_.limits.mosaic, x, y);
+  if (channel >= 0) return radiance.at(x, y, channel);
+  return (radiance.at(x, y, 0) + radiance.at(x, y, 1) + radiance.at(x, y, 2)) / 3.0;
+}
+
+std::vector<std::uint16_t> SimulatedSensor::expose(const Image& radiance, const CameraSettings& applied,
+                                                   std::uint64_t noise_key) const {
+  const SensorDescription& sensor = camera_.sensor;
+  const int width = camera_.limits.width_px, height = camera_.limits.height_px;
+  const double gain = std::pow(10.0, applied.gain_db / 20.0);
+  const double top = std::exp2(camera_.limits.bits) - 1.0;
+  std::vector<std::uint16_t> samples(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  tbb::parallel_for(0, height, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+      CounterRandom random(noise_key, pixel);
+      const double rate = settings_.response_e_per_s_per_radiance * radiance_seen(radiance, x, y) +
+                          dark_current_e_per_s(x, y);
+      const double collected = std::min(random.poisson(rate * applied.exposure_s), sensor.full_well_e);
+      const double read = collected + sensor.read_noise_e * random.normal();
+      const double dn = std::round(sensor.black_level_dn + gain * read / sensor.electrons_per_dn);
+      samples[pixel] = static_cast<std::uint16_t>(std::clamp(dn, 0.0, top));
+    }
+  });
+  return samples;
+}
+
+}  // namespace lumitexel

@@ -1,0 +1,47 @@
+// The world that the simulated devices move, light and photograph: built once, never changed. What changes is a WorldState.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "processing/calibration/camera_model.h"
+#include "processing/surface/mesh.h"
+#include "processing/surface/ray_scene.h"
+#include "rig/rig_description.h"
+#include "sim/material.h"
+#include "sim/simulation_settings.h"
+#include "sim/surface_pattern.h"
+
+namespace lumitexel {
+
+// Where the axes stand and what is lit.
+struct WorldState {
+  double turntable_deg = 0, light_azimuth_deg = 0, light_elevation_deg = 0;
+  bool point_light = false, ring_flash = false, backlight = false;
+  bool operator==(const WorldState&) const = default;
+};
+
+class SimulatedWorld {
+ public:
+  // Throws BadInput naming `where` for a material that does not exist, and what loaded_object throws.
+  SimulatedWorld(const RigDescription& rig, const SimulationSettings& settings, const std::string& where);
+
+  const RigDescription rig;
+  const SimulationSettings settings;
+  const CameraModel camera;
+  const Mesh object, scan;  // the true surface and what a scanner says of it, in the table's frame
+  const RayScene object_rays;
+  const std::vector<Material> materials;
+  const SurfacePattern pattern;
+
+  // The truth behind LightPositionerDescription::nominal_position_in_rig.
+  Eigen::Vector3d point_light_in_rig(double azimuth_deg, double elevation_deg) const;
+  std::vector<Eigen::Vector3d> ring_emitters_in_rig() const;
+  std::vector<Eigen::Vector3d> sphere_centres_in_rig() const;
+};
+
+// The camera of a description as processing sees it.
+CameraModel camera_model_of(const CameraDescription& camera);
+
+}  // namespace lumitexel

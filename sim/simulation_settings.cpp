@@ -1,0 +1,172 @@
+#include "sim/simulation_settings.h"
+
+#include <cmath>
+#include <set>
+#include <sstream>
+#include <toml++/toml.h>
+
+#include "drivers/error.h"
+
+namespace lumitexel {
+namespace {
+
+// Reads keys that are there, checks their ranges, and remembers them, so that the ones left over can be refused.
+class Table {
+ public:
+  Table(const toml::table& table, std::string where) : table_(table), where_(std::move(where)) {}
+
+  void number(const char* key, double& value, double low, double high) {
+    if (const toml::node* node = find(key)) value = checked(*node, key, low, high);
+  }
+
+  void whole(const char* key, int& value, int low, int high) {
+    double read = value;
+    number(key, read, low, high);
+    if (read != std::floor(read)) fail(key, text_of(read), "a whole number");
+    value = static_cast<int>(read);
+  }
+
+  template <class Vector>
+  void numbers(const char* key, Vector& value, double low, double high) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return;
+    const toml::array* array = node->as_array();
+    if (array == nullptr || array->size() != static_cast<std::size_t>(value.size())) {
+      fail(key, "no such list", "a list of " + std::to_string(value.size()) + " numbers");
+    }
+    for (Eigen::Index i = 0; i < value.size(); ++i) {
+      value[i] = checked((*array)[static_cast<std::size_t>(i)], key, low, high);
+    }
+  }
+
+  void text(const char* key, std::string& value) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return;
+    if (!node->is_string()) fail(key, "no text", "a text in quotes");
+    value = **node->as_string();
+  }
+
+  void texts(const char* key, std::vector<std::string>& value, std::size_t most) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return;
+    const std::string expected = "a list of 1 to " + std::to_string(most) + " texts";
+    const toml::array* array = node->as_array();
+    if (array == nullptr || array->empty() || array->size() > most) fail(key, "no such list", expected);
+    value.clear();
+    for (const toml::node& entry : *array) {
+      if (!entry.is_string()) fail(key, "an entry that is no text", expected);
+      value.push_back(**entry.as_string());
+    }
+  }
+
+  void refuse_the_rest() const {
+    for (const auto& [key, node] : table_) {
+      if (!known_.contains(std::string(key.str()))) fail(std::string(key.str()), "unknown key", "a key of [simulation]");
+    }
+  }
+
+  [[noreturn]] void fail(const std::string& key, const std::string& what, const std::string& expected) const {
+    throw BadInput(where_ + ": simulation." + key, what, expected);
+  }
+
+  static std::string text_of(double value) {
+    std::ostringstream stream;
+    stream << value;
+    return stream.str();
+  }
+
+ private:
+  const toml::node* find(const char* key) {
+    known_.insert(key);
+    return table_.get(key);
+  }
+
+  double checked(const toml::node& node, const char* key, double low, double high) const {
+    const std::string expected = "a number from " + text_of(low) + " to " + text_of(high);
+    if (!node.is_number()) fail(key, "no number", expected);
+    const double value = *node.value<double>();
+    if (!(value >= low && value <= high)) fail(key, text_of(value), expected);  // NaN fails as well
+    return value;
+  }
+
+  const toml::table& table_;
+  std::string where_;
+  std::set<std::string> known_;
+};
+
+void read_object(Table& table, SimulationSettings& s) {
+  table.text("object", s.object);
+  table.text("object_up", s.object_up);
+  if (s.object_up != "y" && s.object_up != "z") table.fail("object_up", "'" + s.object_up + "'", "\"y\" or \"z\"");
+  table.number("size_m", s.size_m, 0.01, 1.0);
+  table.numbers("object_centre_in_table_m", s.object_centre_in_table_m, -1.0, 1.0);
+  table.number("scan_deviation_rms_m", s.scan_deviation_rms_m, 0.0, 0.01);
+  table.texts("materials", s.materials, 4);
+}
+
+void read_lamps(Table& table, SimulationSettings& s) {
+  table.numbers("point_light_w_per_sr", s.point_light_w_per_sr, 1e-3, 1e6);
+  table.numbers("arm_offset_m", s.arm_offset_m, -0.05, 0.05);
+  table.number("arm_azimuth_error_deg", s.arm_azimuth_error_deg, -5.0, 5.0);
+  table.number("arm_elevation_error_deg", s.arm_elevation_error_deg, -5.0, 5.0);
+  table.numbers("ring_flash_w_per_sr", s.ring_flash_w_per_sr, 1e-3, 1e6);
+  table.whole("ring_flash_emitters", s.ring_flash_emitters, 1, 256);
+  table.numbers("backlight_w_per_m2_sr", s.backlight_w_per_m2_sr, 0.0, 1e6);
+  table.number("backlight_distance_m", s.backlight_distance_m, 0.1, 10.0);
+  table.numbers("backlight_size_m", s.backlight_size_m, 0.01, 10.0);
+  table.number("lamp_settle_s", s.lamp_settle_s, 0.0, 10.0);
+}
+
+void read_spheres(Table& table, SimulationSettings& s) {
+  table.numbers("first_sphere_in_rig_m", s.first_sphere_in_rig_m, -2.0, 2.0);
+  table.numbers("sphere_line_direction_in_rig", s.sphere_line_direction_in_rig, -1.0, 1.0);
+  if (s.sphere_line_direction_in_rig.norm() < 0.1) {
+    table.fail("sphere_line_direction_in_rig", "no direction", "a vector that is not zero");
+  }
+  s.sphere_line_direction_in_rig.normalize();
+  table.number("sphere_roughness", s.sphere_roughness, 0.005, 0.5);
+  table.numbers("sphere_reflectance", s.sphere_reflectance, 0.0, 1.0);
+}
+
+void read_sensor(Table& table, SimulationSettings& s) {
+  table.number("response_e_per_s_per_radiance", s.response_e_per_s_per_radiance, 1e-3, 1e12);
+  table.number("dark_current_e_per_s", s.dark_current_e_per_s, 0.0, 1e5);
+  table.number("dark_current_doubling_k", s.dark_current_doubling_k, 1.0, 100.0);
+  table.number("sensor_temperature_c", s.sensor_temperature_c, -50.0, 80.0);
+  table.number("hot_pixel_fraction", s.hot_pixel_fraction, 0.0, 0.1);
+  table.number("hot_pixel_current_e_per_s", s.hot_pixel_current_e_per_s, 0.0, 1e7);
+}
+
+toml::table parsed(const std::string& toml_text, const std::string& where) {
+  try {
+    toml::table root = toml::parse(toml_text);
+    if (const toml::table* inner = root["simulation"].as_table()) return *inner;
+    return root;
+  } catch (const toml::parse_error& error) {
+    throw BadInput(where + ": [simulation]", std::string(error.description()), "TOML");
+  }
+}
+
+}  // namespace
+
+SimulationSettings parse_simulation_settings(const std::string& toml_text, const std::string& where) {
+  const toml::table root = parsed(toml_text, where);
+  Table table(root, where);
+  SimulationSettings settings;
+  int seed = 1;
+  table.whole("seed", seed, 0, 2'000'000'000);
+  settings.seed = static_cast<std::uint64_t>(seed);
+  table.whole("samples_per_pixel", settings.samples_per_pixel, 1, 256);
+  const int side = static_cast<int>(std::lround(std::sqrt(settings.samples_per_pixel)));
+  if (side * side != settings.samples_per_pixel) {
+    table.fail("samples_per_pixel", std::to_string(settings.samples_per_pixel), "a square number: 1, 4, 9, …");
+  }
+  read_object(table, settings);
+  read_lamps(table, settings);
+  read_spheres(table, settings);
+  read_sensor(table, settings);
+  table.refuse_the_rest();
+  return settings;
+}
+
+}  // namespace lumitexel
