@@ -16,6 +16,7 @@ constexpr int kFailed = 1, kBadInput = 2;
 const std::vector<void (*)(CLI::App&, CommandAction&)> kCommands = {
     add_plan_command,
     add_verify_command,
+    add_import_command,
 };
 
 std::stop_source& interrupt() {
