@@ -19,6 +19,7 @@ const std::vector<void (*)(CLI::App&, CommandAction&)> kCommands = {
     add_render_command,
     add_evaluate_command,
     add_report_command,
+    add_import_command,
 };
 
 std::stop_source& interrupt() {

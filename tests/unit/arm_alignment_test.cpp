@@ -42,7 +42,7 @@ std::vector<ArmSample> samples(int count, std::uint64_t seed, double scale = 1.0
     const Eigen::Vector3d truth = true_position(s.azimuth_deg, s.elevation_deg);
     s.covariance = covariance_towards(truth);
     const Eigen::Vector3d unit(normal(random), normal(random), normal(random));
-    s.position_in_rig = truth + scale * (s.covariance.llt().matrixL() * unit);
+    s.position_in_rig = truth + scale * Eigen::Vector3d(s.covariance.llt().matrixL() * unit);
     result.push_back(s);
   }
   return result;

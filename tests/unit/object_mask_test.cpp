@@ -64,9 +64,9 @@ TEST(ObjectMask, WithoutAPanelTheMeshDecides) {
 
 TEST(ObjectMask, AMeshOutOfSightIsBadInput) {
   Eigen::Isometry3d away = Eigen::Isometry3d::Identity();
-  away.translation() = {3.0, 0.0, 0.0};
+  away.translation() = Eigen::Vector3d(3.0, 0.0, 0.0);
   EXPECT_THROW(find_object(silhouette(3000.0), square(), camera(), away, 6), BadInput);
-  away.translation() = {0.0, 0.0, -3.0};
+  away.translation() = Eigen::Vector3d(0.0, 0.0, -3.0);
   EXPECT_THROW(find_object(silhouette(3000.0), square(), camera(), away, 6), BadInput);
 }
 
