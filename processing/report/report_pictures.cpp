@@ -40,10 +40,12 @@ std::vector<std::size_t> views_to_show(const std::vector<View>& views) {
 std::string comparison(const View& view, const ViewPictures& pictures, const ViewEvaluation& evaluation) {
   const std::string figures = "relative RMS " + html::number(evaluation.error.relative_rms) + ", PSNR " +
                               html::number(evaluation.error.psnr_db) + " dB";
-  return "<h3>" + html::escaped(view.name) + (view.heldout ? " (held out)" : " (used in the fit)") + "</h3><div class=\"row\">" +
+  return "<h3>" + html::escaped(view.name) + (view.heldout ? " (held out)" : " (used in the fit)") +
+         "</h3><div class=\"row\">" +
          html::figure(html::picture(pictures.photograph, "photograph " + view.name),
                       "Photograph; white is radiance " + html::number(pictures.white)) +
-         html::figure(html::picture(pictures.rendering, "rendering of " + view.name), "Rendering, same exposure; " + figures) +
+         html::figure(html::picture(pictures.rendering, "rendering of " + view.name),
+                      "Rendering, same exposure; " + figures) +
          html::figure(html::picture(pictures.difference, "difference in " + view.name), "Rendering minus photograph") +
          "</div>\n";
 }
@@ -52,7 +54,8 @@ View map_view(const ReportSubject& subject) {
   if (subject.session != nullptr && !subject.session->views.empty()) {
     return subject.session->views[views_to_show(subject.session->views).front()];
   }
-  return framing_view(subject.model.mesh, subject.model.channels, kMapSize_px, {0.4, -1.0, 0.5}, Eigen::Vector3d::UnitZ());
+  return framing_view(subject.model.mesh, subject.model.channels, kMapSize_px, {0.4, -1.0, 0.5},
+                      Eigen::Vector3d::UnitZ());
 }
 
 std::string lobe_text(const LafortuneBrdf& brdf) {
@@ -75,7 +78,8 @@ std::string lobe_text(const LafortuneBrdf& brdf) {
 
 std::string sphere_figures(const Model& model) {
   std::vector<Image> spheres;
-  for (const ModelMaterial& material : model.materials) spheres.push_back(material_sphere(material.brdf, kSphereSize_px));
+  for (const ModelMaterial& material : model.materials)
+    spheres.push_back(material_sphere(material.brdf, kSphereSize_px));
   const double white = sphere_white(spheres);
   const auto texels = texels_by_material(model);
   double total = 0.0;
@@ -108,34 +112,38 @@ std::string comparison_section(const ReportSubject& subject, const ViewRenderer&
     body += comparison(view, pictures, subject.evaluation->views[shown[i]]);
     progress.update(static_cast<std::int64_t>(i + 1));
   }
-  const std::string what = heldout
-      ? "These photographs were kept out of the fit: the model had to predict them from the others. "
-      : "No photograph was kept out of the fit, so these only show how well the model repeats what it has seen. ";
+  const std::string what =
+      heldout
+          ? "These photographs were kept out of the fit: the model had to predict them from the others. "
+          : "No photograph was kept out of the fit, so these only show how well the model repeats what it has seen. ";
   return html::section(heldout ? "Photographs the model never saw" : "Photographs and their re-renderings",
-                       what + "Photograph and rendering are shown at one exposure, chosen so that the photograph's 99th "
-                              "percentile is white, on the sRGB curve; pixels that were not compared are black.",
+                       what +
+                           "Photograph and rendering are shown at one exposure, chosen so that the photograph's 99th "
+                           "percentile is white, on the sRGB curve; pixels that were not compared are black.",
                        body);
 }
 
 std::string material_section(const ReportSubject& subject, const ViewRenderer& renderer) {
   const std::string map = html::figure(html::picture(material_map(renderer, map_view(subject)), "map of the materials"),
                                        "Every texel in the colour of its material; gray where nothing was measured.");
-  return html::section(
-      "Materials",
-      "The fit sorted the surface into materials by how it reflects light. Each is shown as a sphere of that material's "
-      "mean reflectance under one light from above left, all at one exposure. On the object itself every texel mixes its "
-      "material's basis and so varies about this mean. An ideal white surface has albedo 1.",
-      "<div class=\"row\"><div>" + map + "</div><div style=\"grid-column: span 2\">" + sphere_figures(subject.model) +
-          "</div></div>\n");
+  return html::section("Materials",
+                       "The fit sorted the surface into materials by how it reflects light. Each is shown as a sphere "
+                       "of that material's "
+                       "mean reflectance under one light from above left, all at one exposure. On the object itself "
+                       "every texel mixes its "
+                       "material's basis and so varies about this mean. An ideal white surface has albedo 1.",
+                       "<div class=\"row\"><div>" + map + "</div><div style=\"grid-column: span 2\">" +
+                           sphere_figures(subject.model) + "</div></div>\n");
 }
 
 std::string setup_section(const CalibratedSession& session) {
-  return html::section(
-      "Cameras and lights",
-      "Where the camera (triangles) and the light (circles) stood for each photograph, in the object's frame. Blue: used in "
-      "the fit. Brown: held out. Point at a mark to read its photograph's name. Directional lights are drawn at the rim.",
-      "<div class=\"row\">" + html::figure(plan_drawing(session, 0, 1), "Along the world's z axis") +
-          html::figure(plan_drawing(session, 0, 2), "Along the world's y axis") + "</div>\n");
+  return html::section("Cameras and lights",
+                       "Where the camera (triangles) and the light (circles) stood for each photograph, in the "
+                       "object's frame. Blue: used in "
+                       "the fit. Brown: held out. Point at a mark to read its photograph's name. Directional lights "
+                       "are drawn at the rim.",
+                       "<div class=\"row\">" + html::figure(plan_drawing(session, 0, 1), "Along the world's z axis") +
+                           html::figure(plan_drawing(session, 0, 2), "Along the world's y axis") + "</div>\n");
 }
 
 }  // namespace lumitexel
