@@ -1,4 +1,6 @@
+#include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "processing/image/tone_map.h"
 #include "processing/report/html.h"
@@ -50,18 +52,22 @@ std::string comparison(const View& view, const ViewPictures& pictures, const Vie
          "</div>\n";
 }
 
+// As the first photograph shown sees the object, but filling the picture.
 View map_view(const ReportSubject& subject) {
+  const Mesh& mesh = subject.model.mesh;
+  Eigen::Vector3d towards_camera(0.4, -1.0, 0.5), up = Eigen::Vector3d::UnitZ();
   if (subject.session != nullptr && !subject.session->views.empty()) {
-    return subject.session->views[views_to_show(subject.session->views).front()];
+    const View& view = subject.session->views[views_to_show(subject.session->views).front()];
+    towards_camera = -view.camera_from_world.inverse().linear().col(2);
+    up = -view.camera_from_world.inverse().linear().col(1);
   }
-  return framing_view(subject.model.mesh, subject.model.channels, kMapSize_px, {0.4, -1.0, 0.5},
-                      Eigen::Vector3d::UnitZ());
+  return framing_view(mesh, subject.model.channels, kMapSize_px, towards_camera, up);
 }
 
 std::string lobe_text(const LafortuneBrdf& brdf) {
   std::string text = "diffuse albedo ";
   for (int c = 0; c < brdf.channels; ++c) {
-    text += (c > 0 ? " / " : "") + html::number(3.141592653589793 * brdf.diffuse[static_cast<std::size_t>(c)], 2);
+    text += (c > 0 ? " / " : "") + html::number(std::numbers::pi * brdf.diffuse[static_cast<std::size_t>(c)], 2);
   }
   for (const auto& lobe : brdf.lobes) {
     text += "; lobe peak ";
@@ -76,6 +82,19 @@ std::string lobe_text(const LafortuneBrdf& brdf) {
   return text;
 }
 
+// Tone-mapped, on the page's white instead of black: a sphere's dark side then still shows its rim.
+Image sphere_picture(const Image& sphere, double white) {
+  Image shown = tone_mapped(sphere, white);
+  const double middle = 0.5 * sphere.width, radius = middle - 1.0;
+  for (int y = 0; y < shown.height; ++y) {
+    for (int x = 0; x < shown.width; ++x) {
+      const bool outside = std::hypot(x + 0.5 - middle, y + 0.5 - middle) >= radius;
+      for (int c = 0; c < 3 && outside; ++c) shown.at(x, y, c) = 1.0f;
+    }
+  }
+  return shown;
+}
+
 std::string sphere_figures(const Model& model) {
   std::vector<Image> spheres;
   for (const ModelMaterial& material : model.materials)
@@ -87,7 +106,7 @@ std::string sphere_figures(const Model& model) {
   std::string text = "<div class=\"swatches\">";
   for (std::size_t m = 0; m < spheres.size(); ++m) {
     const std::string share = html::number(100.0 * static_cast<double>(texels[m]) / total, 2);
-    text += "<figure>" + html::picture(tone_mapped(spheres[m], white), "sphere of material " + std::to_string(m)) +
+    text += "<figure>" + html::picture(sphere_picture(spheres[m], white), "sphere of material " + std::to_string(m)) +
             "<figcaption><span class=\"key\" style=\"background:" + css_colour(material_colour(static_cast<int>(m))) +
             "\"></span>" +
             html::escaped("Material " + std::to_string(m) + ", " + share + " % of the texels; " +
