@@ -1,7 +1,6 @@
 #include "sim/cube_sphere.h"
 
 #include <cmath>
-#include <map>
 #include <numbers>
 
 namespace lumitexel {
@@ -12,11 +11,14 @@ using Place = std::array<int, 3>;
 
 class Builder {
  public:
-  explicit Builder(int cells) : cells_(cells) {}
+  explicit Builder(int cells) : cells_(cells), index_(power_of_side(3), kUnseen) {}
 
   std::uint32_t vertex(const Place& place) {
-    const auto [found, is_new] = index_.try_emplace(place, static_cast<std::uint32_t>(mesh_.positions.size()));
-    if (is_new) {
+    std::uint32_t& index = index_[static_cast<std::size_t>(place[2]) * power_of_side(2) +
+                                  static_cast<std::size_t>(place[1]) * power_of_side(1) +
+                                  static_cast<std::size_t>(place[0])];
+    if (index == kUnseen) {
+      index = static_cast<std::uint32_t>(mesh_.positions.size());
       Eigen::Vector3d x;
       for (int axis = 0; axis < 3; ++axis) {
         const double along = 2.0 * place[static_cast<std::size_t>(axis)] / cells_ - 1.0;
@@ -24,7 +26,7 @@ class Builder {
       }
       mesh_.positions.push_back(x.normalized());
     }
-    return found->second;
+    return index;
   }
 
   void face(int axis, int side) {
@@ -52,9 +54,14 @@ class Builder {
   }
 
  private:
+  static constexpr std::uint32_t kUnseen = ~0u;
+  std::size_t power_of_side(int exponent) const {
+    return exponent == 0 ? 1 : static_cast<std::size_t>(cells_ + 1) * power_of_side(exponent - 1);
+  }
+
   int cells_;
   Mesh mesh_;
-  std::map<Place, std::uint32_t> index_;
+  std::vector<std::uint32_t> index_;  // of the vertex at each place of the cube's lattice; its inside stays unused
 };
 
 }  // namespace

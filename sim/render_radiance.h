@@ -27,7 +27,7 @@ class RadianceRenderer {
   std::shared_ptr<const Image> render(const WorldState& state);
 
   // Unit direction in the camera's frame through a pixel, by bilinear interpolation of the lens between pixel corners
-  // (error below 1e-5 px for any usable lens).
+  // (error below 1e-4 px for any usable lens).
   Eigen::Vector3d direction_in_camera(double x_px, double y_px) const;
   const SimulatedWorld& world() const { return *world_; }
 
