@@ -15,11 +15,14 @@ constexpr int kFailed = 1, kBadInput = 2;
 // In the order in which a user meets them; the help lists them so.
 const std::vector<void (*)(CLI::App&, CommandAction&)> kCommands = {
     add_plan_command,
+    add_capture_command,
+    add_resume_command,
     add_verify_command,
+    add_import_command,
+    add_calibrate_command,
     add_render_command,
     add_evaluate_command,
     add_report_command,
-    add_import_command,
 };
 
 std::stop_source& interrupt() {
