@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 constexpr int kPlanesPerFile = 4;
 constexpr float kNoMaterialOnDisk = 65535.0f;
-constexpr double kUnitTolerance = 1e-3;   // a unit normal in single, or even half, precision passes
+constexpr double kUnitTolerance = 1e-3;  // a unit normal in single, or even half, precision passes
 const std::vector<std::string> kWeightPlanes{"R", "G", "B", "A"};  // names that every reader shows
 
 std::string weights_file(int file) { return "weights_" + std::to_string(file) + ".exr"; }
@@ -41,7 +41,8 @@ void write_weights(const fs::path& directory, const Model& model) {
       const int k = file * kPlanesPerFile + plane;
       if (k < model.weights.channels) {
         for (std::size_t t = 0; t < data.size(); ++t) {
-          data[t] = model.weights.data[t * static_cast<std::size_t>(model.weights.channels) + static_cast<std::size_t>(k)];
+          data[t] =
+              model.weights.data[t * static_cast<std::size_t>(model.weights.channels) + static_cast<std::size_t>(k)];
         }
       }
       exr.planes.push_back({kWeightPlanes[static_cast<std::size_t>(plane)], ExrPixel::Float, std::move(data)});
@@ -67,7 +68,8 @@ Image read_map(const fs::path& path, const Model& model, const std::vector<std::
   require_size(path, model, exr.width, exr.height);
   Image map(model.width, model.height, static_cast<int>(names.size()));
   for (std::size_t c = 0; c < names.size(); ++c) {
-    const auto plane = std::find_if(exr.planes.begin(), exr.planes.end(), [&](const ExrPlane& p) { return p.name == names[c]; });
+    const auto plane =
+        std::find_if(exr.planes.begin(), exr.planes.end(), [&](const ExrPlane& p) { return p.name == names[c]; });
     if (plane == exr.planes.end()) throw BadInput(path.string(), "no channel " + names[c], "that channel");
     for (std::size_t t = 0; t < plane->data.size(); ++t) {
       const float value = plane->data[t];
@@ -103,7 +105,8 @@ void read_weights(const fs::path& directory, int basis_size, Model& model) {
     for (std::size_t t = 0; t < texels(model); ++t) {
       const float* from = &four.data[t * kPlanesPerFile];
       std::copy(from, from + planes,
-                &model.weights.data[t * static_cast<std::size_t>(basis_size) + static_cast<std::size_t>(file * kPlanesPerFile)]);
+                &model.weights
+                     .data[t * static_cast<std::size_t>(basis_size) + static_cast<std::size_t>(file * kPlanesPerFile)]);
     }
   }
 }
@@ -115,7 +118,8 @@ void read_normals(const fs::path& path, Model& model) {
     const double length = std::sqrt(static_cast<double>(n[0]) * n[0] + static_cast<double>(n[1]) * n[1] +
                                     static_cast<double>(n[2]) * n[2]);
     if (length != 0.0 && std::abs(length - 1.0) > kUnitTolerance) {
-      throw BadInput(texel_name(path, model, t), "a normal of length " + std::to_string(length), "length 1, or 0 for none");
+      throw BadInput(texel_name(path, model, t), "a normal of length " + std::to_string(length),
+                     "length 1, or 0 for none");
     }
   }
 }

@@ -25,8 +25,8 @@ std::vector<AtlasMap> atlas_maps(int basis_size);
 
 void write_atlas_maps(const std::filesystem::path& directory, const Model& model);  // throws Error
 
-// Fills the maps of `model`, whose size and materials are known. Throws BadInput naming the file and the texel for a map
-// that is missing, of another size, not finite, negative (all but normals), or a material or normal that cannot be.
+// Fills the maps of `model`, whose size and materials are known. Throws BadInput naming the file and the texel for a
+// map that is missing, of another size, not finite, negative (all but normals), or a material or normal that cannot be.
 void read_atlas_maps(const std::filesystem::path& directory, int basis_size, Model& model);
 
 }  // namespace lumitexel

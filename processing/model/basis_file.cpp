@@ -14,8 +14,8 @@ using Json = nlohmann::ordered_json;  // keys stay in the order written: the fil
 
 constexpr double kMinLogExponent = -4.605170185988091;  // ln 1e-2
 constexpr double kMaxLogExponent = 11.512925464970229;  // ln 1e5
-constexpr double kBoundSlack = 1e-9;   // the bounds are rounded logarithms
-constexpr double kAgreement = 1e-6;    // of a natural value with its logarithm; both are printed to full precision
+constexpr double kBoundSlack = 1e-9;                    // the bounds are rounded logarithms
+constexpr double kAgreement = 1e-6;  // of a natural value with its logarithm; both are printed to full precision
 
 Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -64,7 +64,8 @@ class Field {
   bool is_null() const { return value_.is_null(); }
   double number(double minimum, double maximum) const {
     const bool fits = value_.is_number() && value_.get<double>() >= minimum && value_.get<double>() <= maximum;
-    if (!fits) fail(value_.dump(), "a finite number from " + std::to_string(minimum) + " to " + std::to_string(maximum));
+    if (!fits)
+      fail(value_.dump(), "a finite number from " + std::to_string(minimum) + " to " + std::to_string(maximum));
     return value_.get<double>();
   }
   double number() const {

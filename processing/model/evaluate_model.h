@@ -1,8 +1,8 @@
 // A model judged by a session's photographs: every view re-rendered and compared over the object's pixels.
 //
 // Object pixels: not saturated, not defective, and inside the session's mask; in a view without a mask, where the ray
-// through the pixel's centre meets the model's mesh. A masked pixel that the mesh misses counts, with a prediction of 0.
-// Measures and their pooling over views: processing/model/image_error.h.
+// through the pixel's centre meets the model's mesh. A masked pixel that the mesh misses counts, with a prediction of
+// 0. Measures and their pooling over views: processing/model/image_error.h.
 #pragma once
 
 #include <array>
@@ -30,10 +30,10 @@ using ErrorByStage = std::array<std::optional<ImageError>, std::size(kFitStages)
 struct Evaluation {
   FitStage last_stage = FitStage::Single;
   std::string session_key;
-  bool same_session = false;        // whether the model was fitted to this session
-  ErrorByStage fit, heldout;        // pooled; the errors are NaN if no view is of that kind
+  bool same_session = false;  // whether the model was fitted to this session
+  ErrorByStage fit, heldout;  // pooled; the errors are NaN if no view is of that kind
   std::vector<ViewEvaluation> views;
-  std::string provenance_json;      // the model's: what the fit itself found on its samples
+  std::string provenance_json;  // the model's: what the fit itself found on its samples
 };
 
 // The last stage of the chain that this model holds.

@@ -43,7 +43,8 @@ std::string evaluation_json(const Evaluation& evaluation) {
   const auto last = static_cast<std::size_t>(evaluation.last_stage);
   Json views = Json::array();
   for (const ViewEvaluation& view : evaluation.views) {
-    Json entry = {{"image", view.image}, {"split", view.heldout ? "heldout" : "fit"}, {"object_pixels", view.object_pixels}};
+    Json entry = {
+        {"image", view.image}, {"split", view.heldout ? "heldout" : "fit"}, {"object_pixels", view.object_pixels}};
     entry.update(to_json(view.error));
     views.push_back(entry);
   }

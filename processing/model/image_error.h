@@ -2,12 +2,12 @@
 //
 // Over the object's pixels and all channels, p predicted, q photographed, both linear radiance:
 //   relative_rms  sqrt(sum (p - q)^2 / sum q^2)
-//   clipped_rms   the same with p and q clipped at the photograph's 99.9th percentile: a few highlight pixels do not decide
-//   sqrt_rms      the same of sqrt(max(p, 0)) and sqrt(max(q, 0)): dark parts count as the eye counts them
+//   clipped_rms   the same with p and q clipped at the photograph's 99.9th percentile: a few highlight pixels do not
+//   decide sqrt_rms      the same of sqrt(max(p, 0)) and sqrt(max(q, 0)): dark parts count as the eye counts them
 //   psnr_db       10 log10(peak^2 / mean (p - q)^2), the peak being the photograph's 99.9th percentile
 //
-// Several views are pooled: the sums run over the pixels of all of them, each photograph keeping its own percentile (for
-// PSNR its errors are divided by its own peak).
+// Several views are pooled: the sums run over the pixels of all of them, each photograph keeping its own percentile
+// (for PSNR its errors are divided by its own peak).
 #pragma once
 
 #include <cstdint>
@@ -42,7 +42,8 @@ class ErrorSums {
   std::int64_t values_ = 0;
 };
 
-// The value that a share `fraction` of the counted pixels' channel values do not exceed (nearest rank); 0 if none is counted.
+// The value that a share `fraction` of the counted pixels' channel values do not exceed (nearest rank); 0 if none is
+// counted.
 double percentile(const Image& image, const std::vector<std::uint8_t>& counted, double fraction);
 
 }  // namespace lumitexel

@@ -4,7 +4,6 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <system_error>
 
 #include "drivers/error.h"
@@ -12,6 +11,7 @@
 #include "processing/model/atlas_maps.h"
 #include "processing/model/basis_file.h"
 #include "processing/surface/mesh_file.h"
+#include "rig/whole_file.h"
 
 namespace lumitexel {
 namespace {
@@ -21,22 +21,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "lumitexel model";
 constexpr int kVersion = 1;
-constexpr int kLargestAtlas = 1 << 15;    // a side of more than this is a damaged number, not an atlas
-std::string read_text(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw BadInput(path.string(), "missing or unreadable", "a file of the model");
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-void write_text(const fs::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw Error(path.string() + ": could not be written");
-}
-
+constexpr int kLargestAtlas = 1 << 15;  // a side of more than this is a damaged number, not an atlas
 // ---- writing
 
 Json model_json(const Model& model) {
@@ -70,10 +55,10 @@ void require_consistent(const Model& model) {
 }
 
 void write_files(const fs::path& directory, const Model& model) {
-  write_text(directory / "basis.json", encode_basis(model));
+  write_whole_file(directory / "basis.json", encode_basis(model));
   write_atlas_maps(directory, model);
   write_ply(directory / "mesh.ply", model.mesh);
-  write_text(directory / "model.json", model_json(model).dump(1) + "\n");
+  write_whole_file(directory / "model.json", model_json(model).dump(1) + "\n");
 }
 
 bool is_model(const fs::path& directory) {
@@ -126,8 +111,10 @@ int int_field(const Json& parent, const char* key, int minimum, int maximum, con
   const std::string name = where + ": " + key;
   if (!parent.is_object() || !parent.contains(key)) throw BadInput(name, "missing", "an integer");
   const Json& value = parent.at(key);
-  const bool fits = value.is_number_integer() && value.get<std::int64_t>() >= minimum && value.get<std::int64_t>() <= maximum;
-  if (!fits) throw BadInput(name, value.dump(), "an integer from " + std::to_string(minimum) + " to " + std::to_string(maximum));
+  const bool fits =
+      value.is_number_integer() && value.get<std::int64_t>() >= minimum && value.get<std::int64_t>() <= maximum;
+  if (!fits)
+    throw BadInput(name, value.dump(), "an integer from " + std::to_string(minimum) + " to " + std::to_string(maximum));
   return value.get<int>();
 }
 
@@ -159,7 +146,7 @@ ModelHeader parse_header(const std::string& text, const std::string& where) {
 }
 
 void read_basis(const fs::path& path, const ModelHeader& header, Model& model) {
-  BasisTable table = parse_basis(read_text(path), model.channels, path.string());
+  BasisTable table = parse_basis(read_whole_file(path), model.channels, path.string());
   std::size_t basis_size = 0;
   for (const ModelMaterial& material : table.materials) basis_size = std::max(basis_size, material.basis.size());
   if (table.materials.size() != static_cast<std::size_t>(header.materials)) {
@@ -200,7 +187,7 @@ void write_model(const fs::path& directory, const Model& model) {
 Model read_model(const fs::path& directory) {
   if (!fs::is_directory(directory)) throw BadInput(directory.string(), "no such folder", "the folder of a model");
   const fs::path description = directory / "model.json";
-  ModelHeader header = parse_header(read_text(description), description.string());
+  ModelHeader header = parse_header(read_whole_file(description), description.string());
   Model model = std::move(header.model);
   read_basis(directory / "basis.json", header, model);
   read_atlas_maps(directory, header.basis_size, model);

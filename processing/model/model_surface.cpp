@@ -36,7 +36,8 @@ void ModelSurface::add_texels(const Eigen::Vector2d& texcoord, SurfacePoint& poi
     const double weight = (dx == 1 ? x - left : 1.0 - (x - left)) * (dy == 1 ? y - top : 1.0 - (y - top));
     const int tx = std::clamp(static_cast<int>(left) + dx, 0, model_.width - 1);
     const int ty = std::clamp(static_cast<int>(top) + dy, 0, model_.height - 1);
-    const auto texel = static_cast<std::size_t>(ty) * static_cast<std::size_t>(model_.width) + static_cast<std::size_t>(tx);
+    const auto texel =
+        static_cast<std::size_t>(ty) * static_cast<std::size_t>(model_.width) + static_cast<std::size_t>(tx);
     if (weight <= 0.0 || model_.material[texel] == Model::kNoMaterial) continue;
     point.texels[static_cast<std::size_t>(point.texel_count++)] = {tx, ty, weight};
     total += weight;

@@ -139,7 +139,8 @@ RenderedView ViewRenderer::render(const View& view, const RenderOptions& options
       result.radiance.at(x, y, c) = static_cast<float>(sum[static_cast<std::size_t>(c)] / options.samples_per_pixel);
     }
     const bool hit = surface_.trace(eye.origin(), eye.direction(x + 0.5, y + 0.5)).has_value();
-    result.hit[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width_px) + static_cast<std::size_t>(x)] = hit;
+    result.hit[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width_px) + static_cast<std::size_t>(x)] =
+        hit;
   });
   return result;
 }
@@ -183,7 +184,8 @@ View framing_view(const Mesh& mesh, int channels, int size_px, const Eigen::Vect
   view.camera_from_world.translation() = -world_from_camera.transpose() * eye;
   view.light.vector_in_world = eye + 0.3 * distance_m * (back.cross(right) + right);
   const double light_distance_m = (view.light.vector_in_world - centre).norm();
-  view.light.intensity.assign(static_cast<std::size_t>(channels), std::numbers::pi * light_distance_m * light_distance_m);
+  view.light.intensity.assign(static_cast<std::size_t>(channels),
+                              std::numbers::pi * light_distance_m * light_distance_m);
   return view;
 }
 

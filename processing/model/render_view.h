@@ -2,8 +2,8 @@
 //
 // The radiance of a surface point is f(wi, wo) * cos(theta_i) * irradiance in the unit of the session's photographs
 // (see Light). f * cos is computed at each of the four texels around the point with that texel's own normal and
-// blended bilinearly over those that have a material. Hard shadows; 0 in shadow, where the surface faces away, in a hole of
-// the atlas and beside the object. No light bounces twice.
+// blended bilinearly over those that have a material. Hard shadows; 0 in shadow, where the surface faces away, in a
+// hole of the atlas and beside the object. No light bounces twice.
 #pragma once
 
 #include <cstdint>

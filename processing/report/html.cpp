@@ -40,11 +40,20 @@ std::string escaped(const std::string& text) {
   std::string safe;
   for (const char letter : text) {
     switch (letter) {
-      case '&': safe += "&amp;"; break;
-      case '<': safe += "&lt;"; break;
-      case '>': safe += "&gt;"; break;
-      case '"': safe += "&quot;"; break;
-      default: safe += letter;
+      case '&':
+        safe += "&amp;";
+        break;
+      case '<':
+        safe += "&lt;";
+        break;
+      case '>':
+        safe += "&gt;";
+        break;
+      case '"':
+        safe += "&quot;";
+        break;
+      default:
+        safe += letter;
     }
   }
   return safe;
@@ -59,7 +68,8 @@ std::string number(double value, int digits) {
     return text;
   }
   const int before_point = magnitude >= 1.0 ? static_cast<int>(std::floor(std::log10(magnitude))) + 1 : 0;
-  const int leading_zeros = magnitude > 0.0 && magnitude < 1.0 ? -static_cast<int>(std::floor(std::log10(magnitude))) - 1 : 0;
+  const int leading_zeros =
+      magnitude > 0.0 && magnitude < 1.0 ? -static_cast<int>(std::floor(std::log10(magnitude))) - 1 : 0;
   const int decimals = value == std::floor(value) ? 0 : std::max(0, digits - before_point + leading_zeros);
   std::snprintf(text, sizeof text, "%.*f", decimals, value);
   return text;
@@ -67,7 +77,8 @@ std::string number(double value, int digits) {
 
 std::string picture(const Image& unit_values, const std::string& description) {
   return "<img alt=\"" + escaped(description) + "\" width=\"" + std::to_string(unit_values.width) + "\" height=\"" +
-         std::to_string(unit_values.height) + "\" src=\"data:image/png;base64," + base64(encode_png8(unit_values)) + "\">";
+         std::to_string(unit_values.height) + "\" src=\"data:image/png;base64," + base64(encode_png8(unit_values)) +
+         "\">";
 }
 
 std::string figure(const std::string& picture_markup, const std::string& caption) {

@@ -50,7 +50,7 @@ Image material_map(const ViewRenderer& renderer, const View& view) {
 }
 
 Image material_sphere(const LafortuneBrdf& brdf, int size_px) {
-  const Eigen::Vector3d wi = Eigen::Vector3d(-0.5, 0.6, 0.9).normalized(), wo = Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d wi = Eigen::Vector3d(-0.4, 0.5, 1.0).normalized(), wo = Eigen::Vector3d::UnitZ();
   Image sphere(size_px, size_px, brdf.channels);
   const double radius_px = 0.5 * size_px - 1.0;
   for (int y = 0; y < size_px; ++y) {

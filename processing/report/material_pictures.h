@@ -11,8 +11,8 @@ namespace lumitexel {
 // Well apart for up to twelve materials, then repeating with another lightness. sRGB in [0, 1].
 std::array<float, 3> material_colour(int material);
 
-// The object with every material in its colour, shaded lightly so that its form can be seen. White beside the object, gray
-// where the atlas has no material.
+// The object with every material in its colour, shaded lightly so that its form can be seen. White beside the object,
+// gray where the atlas has no material.
 Image material_map(const ViewRenderer& renderer, const View& view);
 
 // A sphere of one material (its cluster's BRDF), seen from the front, lit by a directional light from above left that

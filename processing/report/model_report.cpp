@@ -19,8 +19,10 @@ std::string model_report(const ReportSubject& subject, Progress& progress) {
   if (compared) {
     body += comparison_section(subject, renderer, progress);
   } else {
-    body += html::section("Photographs", "This page was made without the session's photographs: run the report with "
-                                         "--session to see them beside their re-renderings.", "");
+    body += html::section("Photographs",
+                          "This page was made without the session's photographs: run the report with "
+                          "--session to see them beside their re-renderings.",
+                          "");
   }
   body += sample_error_section(provenance);
   if (compared) body += photograph_error_section(*subject.evaluation);

@@ -68,7 +68,9 @@ Drawing framed(const CalibratedSession& session, int horizontal, int vertical) {
   }
   drawing.centre = drawing.flat(0.5 * (low + high));
   double reach_m = 0.5 * (high - low).norm();
-  const auto include = [&](const Eigen::Vector3d& x) { reach_m = std::max(reach_m, (drawing.flat(x) - drawing.centre).norm()); };
+  const auto include = [&](const Eigen::Vector3d& x) {
+    reach_m = std::max(reach_m, (drawing.flat(x) - drawing.centre).norm());
+  };
   for (const View& view : session.views) {
     include(view.camera_in_world());
     if (view.light.type == Light::Type::Point) include(view.light.vector_in_world);
@@ -90,8 +92,8 @@ std::string camera_shape(const Drawing& drawing, const View& view) {
   const Eigen::Vector2d at = drawing.pixel(drawing.flat(view.camera_in_world()));
   const Eigen::Vector2d looking = drawing.flat(view.camera_from_world.inverse().linear().col(2));
   // Pixels run down. A camera that looks along the line of sight of this drawing is drawn looking up.
-  const Eigen::Vector2d ahead = looking.norm() > 1e-6 ? Eigen::Vector2d(looking.x(), -looking.y()).normalized()
-                                                      : Eigen::Vector2d(0.0, -1.0);
+  const Eigen::Vector2d ahead =
+      looking.norm() > 1e-6 ? Eigen::Vector2d(looking.x(), -looking.y()).normalized() : Eigen::Vector2d(0.0, -1.0);
   const Eigen::Vector2d aside(-ahead.y(), ahead.x());
   return "<polygon fill=\"" + std::string(view.heldout ? kHeldoutColour : kFitColour) + "\" points=\"" + xy(at) +
          xy(at + 11.0 * ahead + 6.0 * aside) + xy(at + 11.0 * ahead - 6.0 * aside) + "\"><title>camera of " +
@@ -101,7 +103,8 @@ std::string camera_shape(const Drawing& drawing, const View& view) {
 std::string light_shape(const Drawing& drawing, const View& view) {
   const Eigen::Vector2d at = drawing.pixel(light_place(drawing, view.light));
   char circle[160];
-  std::snprintf(circle, sizeof circle, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4.5\" fill=\"#fff3c4\" stroke=\"%s\" stroke-width=\"1.8\">",
+  std::snprintf(circle, sizeof circle,
+                "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4.5\" fill=\"#fff3c4\" stroke=\"%s\" stroke-width=\"1.8\">",
                 at.x(), at.y(), view.heldout ? kHeldoutColour : kFitColour);
   return circle + std::string("<title>light of ") + html::escaped(view.name) + "</title></circle>\n";
 }
@@ -110,11 +113,12 @@ std::string scale_bar(const Drawing& drawing) {
   const double length_m = std::pow(10.0, std::floor(std::log10(drawing.reach_m)));
   const double length_px = length_m * (0.5 * kSize_px - kMargin_px) / drawing.reach_m;
   char text[320];
-  std::snprintf(text, sizeof text,
-                "<path d=\"M12 %.0f h%.1f\" stroke=\"#5c6672\" stroke-width=\"2\"/><text x=\"12\" y=\"%.0f\">%g m</text>"
-                "<text x=\"%.0f\" y=\"%.0f\" text-anchor=\"end\">%c to the right, %c up</text>\n",
-                kSize_px - 12, length_px, kSize_px - 18, length_m, kSize_px - 12, kSize_px - 12,
-                kAxisNames[drawing.horizontal], kAxisNames[drawing.vertical]);
+  std::snprintf(
+      text, sizeof text,
+      "<path d=\"M12 %.0f h%.1f\" stroke=\"#5c6672\" stroke-width=\"2\"/><text x=\"12\" y=\"%.0f\">%g m</text>"
+      "<text x=\"%.0f\" y=\"%.0f\" text-anchor=\"end\">%c to the right, %c up</text>\n",
+      kSize_px - 12, length_px, kSize_px - 18, length_m, kSize_px - 12, kSize_px - 12, kAxisNames[drawing.horizontal],
+      kAxisNames[drawing.vertical]);
   return text;
 }
 
@@ -123,8 +127,10 @@ std::string scale_bar(const Drawing& drawing) {
 std::string plan_drawing(const CalibratedSession& session, int horizontal, int vertical) {
   const Drawing drawing = framed(session, horizontal, vertical);
   char head[160];
-  std::snprintf(head, sizeof head, "<svg viewBox=\"0 0 %.0f %.0f\" role=\"img\"><rect width=\"100%%\" height=\"100%%\" fill=\"#f5f6f8\"/>\n",
-                kSize_px, kSize_px);
+  std::snprintf(
+      head, sizeof head,
+      "<svg viewBox=\"0 0 %.0f %.0f\" role=\"img\"><rect width=\"100%%\" height=\"100%%\" fill=\"#f5f6f8\"/>\n",
+      kSize_px, kSize_px);
   std::string text = head + object_shape(drawing, session.mesh);
   for (const View& view : session.views) text += camera_shape(drawing, view);
   for (const View& view : session.views) text += light_shape(drawing, view);

@@ -7,8 +7,8 @@
 
 namespace lumitexel {
 
-// Projected along a world axis: horizontal and vertical are the axes (0 x, 1 y, 2 z) drawn to the right and up. Point lights
-// stand where they are; a directional light is drawn at the rim, in its direction. Metres, with a scale bar.
+// Projected along a world axis: horizontal and vertical are the axes (0 x, 1 y, 2 z) drawn to the right and up. Point
+// lights stand where they are; a directional light is drawn at the rim, in its direction. Metres, with a scale bar.
 std::string plan_drawing(const CalibratedSession& session, int horizontal, int vertical);
 
 }  // namespace lumitexel

@@ -1,4 +1,6 @@
+#include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "processing/image/tone_map.h"
 #include "processing/report/html.h"
@@ -40,25 +42,32 @@ std::vector<std::size_t> views_to_show(const std::vector<View>& views) {
 std::string comparison(const View& view, const ViewPictures& pictures, const ViewEvaluation& evaluation) {
   const std::string figures = "relative RMS " + html::number(evaluation.error.relative_rms) + ", PSNR " +
                               html::number(evaluation.error.psnr_db) + " dB";
-  return "<h3>" + html::escaped(view.name) + (view.heldout ? " (held out)" : " (used in the fit)") + "</h3><div class=\"row\">" +
+  return "<h3>" + html::escaped(view.name) + (view.heldout ? " (held out)" : " (used in the fit)") +
+         "</h3><div class=\"row\">" +
          html::figure(html::picture(pictures.photograph, "photograph " + view.name),
                       "Photograph; white is radiance " + html::number(pictures.white)) +
-         html::figure(html::picture(pictures.rendering, "rendering of " + view.name), "Rendering, same exposure; " + figures) +
+         html::figure(html::picture(pictures.rendering, "rendering of " + view.name),
+                      "Rendering, same exposure; " + figures) +
          html::figure(html::picture(pictures.difference, "difference in " + view.name), "Rendering minus photograph") +
          "</div>\n";
 }
 
+// As the first photograph shown sees the object, but filling the picture.
 View map_view(const ReportSubject& subject) {
+  const Mesh& mesh = subject.model.mesh;
+  Eigen::Vector3d towards_camera(0.4, -1.0, 0.5), up = Eigen::Vector3d::UnitZ();
   if (subject.session != nullptr && !subject.session->views.empty()) {
-    return subject.session->views[views_to_show(subject.session->views).front()];
+    const View& view = subject.session->views[views_to_show(subject.session->views).front()];
+    towards_camera = -view.camera_from_world.inverse().linear().col(2);
+    up = -view.camera_from_world.inverse().linear().col(1);
   }
-  return framing_view(subject.model.mesh, subject.model.channels, kMapSize_px, {0.4, -1.0, 0.5}, Eigen::Vector3d::UnitZ());
+  return framing_view(mesh, subject.model.channels, kMapSize_px, towards_camera, up);
 }
 
 std::string lobe_text(const LafortuneBrdf& brdf) {
   std::string text = "diffuse albedo ";
   for (int c = 0; c < brdf.channels; ++c) {
-    text += (c > 0 ? " / " : "") + html::number(3.141592653589793 * brdf.diffuse[static_cast<std::size_t>(c)], 2);
+    text += (c > 0 ? " / " : "") + html::number(std::numbers::pi * brdf.diffuse[static_cast<std::size_t>(c)], 2);
   }
   for (const auto& lobe : brdf.lobes) {
     text += "; lobe peak ";
@@ -73,9 +82,23 @@ std::string lobe_text(const LafortuneBrdf& brdf) {
   return text;
 }
 
+// Tone-mapped, on the page's white instead of black: a sphere's dark side then still shows its rim.
+Image sphere_picture(const Image& sphere, double white) {
+  Image shown = tone_mapped(sphere, white);
+  const double middle = 0.5 * sphere.width, radius = middle - 1.0;
+  for (int y = 0; y < shown.height; ++y) {
+    for (int x = 0; x < shown.width; ++x) {
+      const bool outside = std::hypot(x + 0.5 - middle, y + 0.5 - middle) >= radius;
+      for (int c = 0; c < 3 && outside; ++c) shown.at(x, y, c) = 1.0f;
+    }
+  }
+  return shown;
+}
+
 std::string sphere_figures(const Model& model) {
   std::vector<Image> spheres;
-  for (const ModelMaterial& material : model.materials) spheres.push_back(material_sphere(material.brdf, kSphereSize_px));
+  for (const ModelMaterial& material : model.materials)
+    spheres.push_back(material_sphere(material.brdf, kSphereSize_px));
   const double white = sphere_white(spheres);
   const auto texels = texels_by_material(model);
   double total = 0.0;
@@ -83,7 +106,7 @@ std::string sphere_figures(const Model& model) {
   std::string text = "<div class=\"swatches\">";
   for (std::size_t m = 0; m < spheres.size(); ++m) {
     const std::string share = html::number(100.0 * static_cast<double>(texels[m]) / total, 2);
-    text += "<figure>" + html::picture(tone_mapped(spheres[m], white), "sphere of material " + std::to_string(m)) +
+    text += "<figure>" + html::picture(sphere_picture(spheres[m], white), "sphere of material " + std::to_string(m)) +
             "<figcaption><span class=\"key\" style=\"background:" + css_colour(material_colour(static_cast<int>(m))) +
             "\"></span>" +
             html::escaped("Material " + std::to_string(m) + ", " + share + " % of the texels; " +
@@ -108,34 +131,38 @@ std::string comparison_section(const ReportSubject& subject, const ViewRenderer&
     body += comparison(view, pictures, subject.evaluation->views[shown[i]]);
     progress.update(static_cast<std::int64_t>(i + 1));
   }
-  const std::string what = heldout
-      ? "These photographs were kept out of the fit: the model had to predict them from the others. "
-      : "No photograph was kept out of the fit, so these only show how well the model repeats what it has seen. ";
+  const std::string what =
+      heldout
+          ? "These photographs were kept out of the fit: the model had to predict them from the others. "
+          : "No photograph was kept out of the fit, so these only show how well the model repeats what it has seen. ";
   return html::section(heldout ? "Photographs the model never saw" : "Photographs and their re-renderings",
-                       what + "Photograph and rendering are shown at one exposure, chosen so that the photograph's 99th "
-                              "percentile is white, on the sRGB curve; pixels that were not compared are black.",
+                       what +
+                           "Photograph and rendering are shown at one exposure, chosen so that the photograph's 99th "
+                           "percentile is white, on the sRGB curve; pixels that were not compared are black.",
                        body);
 }
 
 std::string material_section(const ReportSubject& subject, const ViewRenderer& renderer) {
   const std::string map = html::figure(html::picture(material_map(renderer, map_view(subject)), "map of the materials"),
                                        "Every texel in the colour of its material; gray where nothing was measured.");
-  return html::section(
-      "Materials",
-      "The fit sorted the surface into materials by how it reflects light. Each is shown as a sphere of that material's "
-      "mean reflectance under one light from above left, all at one exposure. On the object itself every texel mixes its "
-      "material's basis and so varies about this mean. An ideal white surface has albedo 1.",
-      "<div class=\"row\"><div>" + map + "</div><div style=\"grid-column: span 2\">" + sphere_figures(subject.model) +
-          "</div></div>\n");
+  return html::section("Materials",
+                       "The fit sorted the surface into materials by how it reflects light. Each is shown as a sphere "
+                       "of that material's "
+                       "mean reflectance under one light from above left, all at one exposure. On the object itself "
+                       "every texel mixes its "
+                       "material's basis and so varies about this mean. An ideal white surface has albedo 1.",
+                       "<div class=\"row\"><div>" + map + "</div><div style=\"grid-column: span 2\">" +
+                           sphere_figures(subject.model) + "</div></div>\n");
 }
 
 std::string setup_section(const CalibratedSession& session) {
-  return html::section(
-      "Cameras and lights",
-      "Where the camera (triangles) and the light (circles) stood for each photograph, in the object's frame. Blue: used in "
-      "the fit. Brown: held out. Point at a mark to read its photograph's name. Directional lights are drawn at the rim.",
-      "<div class=\"row\">" + html::figure(plan_drawing(session, 0, 1), "Along the world's z axis") +
-          html::figure(plan_drawing(session, 0, 2), "Along the world's y axis") + "</div>\n");
+  return html::section("Cameras and lights",
+                       "Where the camera (triangles) and the light (circles) stood for each photograph, in the "
+                       "object's frame. Blue: used in "
+                       "the fit. Brown: held out. Point at a mark to read its photograph's name. Directional lights "
+                       "are drawn at the rim.",
+                       "<div class=\"row\">" + html::figure(plan_drawing(session, 0, 1), "Along the world's z axis") +
+                           html::figure(plan_drawing(session, 0, 2), "Along the world's y axis") + "</div>\n");
 }
 
 }  // namespace lumitexel

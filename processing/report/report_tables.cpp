@@ -81,8 +81,8 @@ std::string bars(const Json& stages, const std::string& key, double unit, const 
   for (const Json& stage : stages) {
     const double value = number_or_nan(stage, key);
     const double percent = std::isfinite(value) ? 100.0 * value / largest : 0.0;
-    text += "<span>" + html::escaped(stage.value("name", "?")) + "</span><div class=\"track\"><div class=\"fill " + css_class +
-            "\" style=\"width:" + html::number(percent, 3) + "%\"></div></div><span class=\"value\">" +
+    text += "<span>" + html::escaped(stage.value("name", "?")) + "</span><div class=\"track\"><div class=\"fill " +
+            css_class + "\" style=\"width:" + html::number(percent, 3) + "%\"></div></div><span class=\"value\">" +
             html::number(value / unit) + " " + unit_name + "</span>\n";
   }
   return text + "</div>\n";
@@ -103,10 +103,12 @@ std::string headline(const ReportSubject& subject, const Json& provenance) {
   for (const std::int64_t count : texels_by_material(subject.model)) texels += count;
   const Json rms = provenance.value("rms", Json::object());
   const double ratio = number_or_nan(rms, "projection") / number_or_nan(rms, "single");
-  std::string text =
-      "<header><h1>" + html::escaped(subject.name) + "</h1>\n<p>How the surface of this object reflects light, measured "
-      "from photographs under a moving lamp. Every point of the surface has its own reflectance, so the object can be shown "
-      "from any side under any light. This page says what was found and how far it can be trusted.</p>\n<div class=\"tiles\">";
+  std::string text = "<header><h1>" + html::escaped(subject.name) +
+                     "</h1>\n<p>How the surface of this object reflects light, measured "
+                     "from photographs under a moving lamp. Every point of the surface has its own reflectance, so the "
+                     "object can be shown "
+                     "from any side under any light. This page says what was found and how far it can be "
+                     "trusted.</p>\n<div class=\"tiles\">";
   text += tile(std::to_string(subject.model.materials.size()), "materials found");
   text += tile(std::to_string(texels), "texels (surface points) with a reflectance");
   text += tile(html::number(number_or_nan(provenance, "samples"), 8), "reflectance samples the fit used");
@@ -126,7 +128,8 @@ std::string sample_error_section(const Json& provenance) {
   for (const FitStage stage : kFitStages) {
     const double value = number_or_nan(rms, to_string(stage));
     if (std::isfinite(value)) {
-      rows.push_back({stage_title(to_string(stage)), html::number(value), html::number(value / number_or_nan(rms, "single"))});
+      rows.push_back(
+          {stage_title(to_string(stage)), html::number(value), html::number(value / number_or_nan(rms, "single"))});
     }
   }
   std::string body = html::table({"stage", "RMS of r", "share of 1-RMS"}, rows);
@@ -143,10 +146,11 @@ std::string sample_error_section(const Json& provenance) {
   for (std::size_t m = 0; m < longest_list(materials); ++m) names.push_back("material " + std::to_string(m));
   const std::string by_material = table_by_stage(materials, names);
   if (!by_material.empty()) body += "<h3>By material</h3>" + by_material;
-  return html::section("How well the measurements are explained",
-                       "Root mean square difference between predicted and measured reflectance r = f cos, over all samples the "
-                       "fit used and all channels, after each stage. Each stage starts from the one above it.",
-                       body);
+  return html::section(
+      "How well the measurements are explained",
+      "Root mean square difference between predicted and measured reflectance r = f cos, over all samples the "
+      "fit used and all channels, after each stage. Each stage starts from the one above it.",
+      body);
 }
 
 std::string photograph_error_section(const Evaluation& evaluation) {
@@ -156,13 +160,16 @@ std::string photograph_error_section(const Evaluation& evaluation) {
     row.insert(row.begin() + 1, view.heldout ? "held out" : "fit");
     rows.push_back(row);
   }
-  std::string note = "Whole pictures re-rendered and compared with the photographs, over the object's pixels. A model can learn "
-                     "the photographs of the fit by heart; only those kept out tell how it does in a new view and light.";
-  if (!evaluation.same_session) note += " The model was fitted to another session than the one it is compared with here.";
-  return html::section("How well photographs are predicted", note,
-                       error_table("Photographs kept out of the fit", evaluation.heldout) +
-                           error_table("Photographs used in the fit", evaluation.fit) + "<h3>Each photograph</h3>" +
-                           html::table({"photograph", "role", "relative RMS", "clipped", "square roots", "PSNR (dB)"}, rows));
+  std::string note =
+      "Whole pictures re-rendered and compared with the photographs, over the object's pixels. A model can learn "
+      "the photographs of the fit by heart; only those kept out tell how it does in a new view and light.";
+  if (!evaluation.same_session)
+    note += " The model was fitted to another session than the one it is compared with here.";
+  return html::section(
+      "How well photographs are predicted", note,
+      error_table("Photographs kept out of the fit", evaluation.heldout) +
+          error_table("Photographs used in the fit", evaluation.fit) + "<h3>Each photograph</h3>" +
+          html::table({"photograph", "role", "relative RMS", "clipped", "square roots", "PSNR (dB)"}, rows));
 }
 
 std::string timing_section(const Json& provenance) {
@@ -177,14 +184,18 @@ std::string timing_section(const Json& provenance) {
 std::string definitions_section() {
   return html::section(
       "What the figures mean", "All comparisons are made in linear radiance, before any tone curve.",
-      html::table({"figure", "definition"},
-                  {{"relative RMS", "RMS of rendering minus photograph, divided by the RMS of the photograph"},
-                   {"clipped", "the same, both clipped at the photograph's 99.9th percentile, so that a few highlights do not decide"},
-                   {"square roots", "the same on square roots, closer to how differences look"},
-                   {"PSNR", "peak signal to noise in decibels; the peak is the photograph's 99.9th percentile"},
-                   {"several photographs", "the pixels of all are pooled, each photograph with its own percentile"}}) +
-          "<p>Pixels that saturated or were defective, and those outside the object's mask, are left out. Where the mesh misses an "
-          "object pixel, the rendering counts as black. Every number on this page is also in its JSON block (id “data”).</p>");
+      html::table(
+          {"figure", "definition"},
+          {{"relative RMS", "RMS of rendering minus photograph, divided by the RMS of the photograph"},
+           {"clipped",
+            "the same, both clipped at the photograph's 99.9th percentile, so that a few highlights do not decide"},
+           {"square roots", "the same on square roots, closer to how differences look"},
+           {"PSNR", "peak signal to noise in decibels; the peak is the photograph's 99.9th percentile"},
+           {"several photographs", "the pixels of all are pooled, each photograph with its own percentile"}}) +
+          "<p>Pixels that saturated or were defective, and those outside the object's mask, are left out. Where the "
+          "mesh misses an "
+          "object pixel, the rendering counts as black. Every number on this page is also in its JSON block (id "
+          "“data”).</p>");
 }
 
 }  // namespace lumitexel

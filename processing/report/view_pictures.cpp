@@ -21,7 +21,8 @@ Box box_of(const std::vector<std::uint8_t>& counted, int width, int height) {
   Box box{width, height, 0, 0};
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      if (counted[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] == 0) continue;
+      if (counted[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] == 0)
+        continue;
       box = {std::min(box.left, x), std::min(box.top, y), std::max(box.right, x + 1), std::max(box.bottom, y + 1)};
     }
   }
@@ -32,7 +33,8 @@ Box box_of(const std::vector<std::uint8_t>& counted, int width, int height) {
 
 // Mean over blocks of whole pixels, before any tone curve.
 Image reduced(const Image& image, const Box& box, int factor) {
-  Image small(std::max(1, (box.right - box.left) / factor), std::max(1, (box.bottom - box.top) / factor), image.channels);
+  Image small(std::max(1, (box.right - box.left) / factor), std::max(1, (box.bottom - box.top) / factor),
+              image.channels);
   for (int y = 0; y < small.height; ++y) {
     for (int x = 0; x < small.width; ++x) {
       for (int c = 0; c < image.channels; ++c) {
@@ -78,7 +80,8 @@ std::array<float, 3> false_colour(double position) {
   return colour;
 }
 
-ViewPictures make_view_pictures(const ViewRenderer& renderer, const View& view, int channels, FitStage stage, int width_px) {
+ViewPictures make_view_pictures(const ViewRenderer& renderer, const View& view, int channels, FitStage stage,
+                                int width_px) {
   RadianceImage photograph = read_photograph(view, channels);
   RenderedView rendered = renderer.render(view, {stage, 1});
   const auto counted = object_pixels(photograph, rendered.hit);

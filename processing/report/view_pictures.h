@@ -13,13 +13,14 @@ struct ViewPictures {
   double white = 1;
 };
 
-// The difference is the mean over channels of rendering minus photograph, on the scale of false_colour: full colour at this
-// share of white.
+// The difference is the mean over channels of rendering minus photograph, on the scale of false_colour: full colour at
+// this share of white.
 inline constexpr double kDifferenceRange = 0.3;
 
 // position in [-1, 1]: from blue (the rendering is too dark) over near-white to red (too bright).
 std::array<float, 3> false_colour(double position);
 
-ViewPictures make_view_pictures(const ViewRenderer& renderer, const View& view, int channels, FitStage stage, int width_px);
+ViewPictures make_view_pictures(const ViewRenderer& renderer, const View& view, int channels, FitStage stage,
+                                int width_px);
 
 }  // namespace lumitexel

@@ -22,7 +22,8 @@ std::string row(const std::string& name, const ImageError& error) {
 
 std::string heading(const std::string& title) {
   char line[160];
-  std::snprintf(line, sizeof line, "%-30s %10s %10s %10s %9s\n", title.c_str(), "relative", "clipped", "sqrt", "PSNR dB");
+  std::snprintf(line, sizeof line, "%-30s %10s %10s %10s %9s\n", title.c_str(), "relative", "clipped", "sqrt",
+                "PSNR dB");
   return line;
 }
 
@@ -47,8 +48,8 @@ std::string sample_rows(const nlohmann::json& rms) {
 }
 
 std::string evaluation_text(const Evaluation& evaluation, const nlohmann::json& json) {
-  std::string text = heading("held-out photographs") + stage_rows(evaluation.heldout) + heading("photographs of the fit") +
-                     stage_rows(evaluation.fit);
+  std::string text = heading("held-out photographs") + stage_rows(evaluation.heldout) +
+                     heading("photographs of the fit") + stage_rows(evaluation.fit);
   text += heading(std::string("views at stage ") + to_string(evaluation.last_stage));
   for (const ViewEvaluation& view : evaluation.views) {
     text += row(view.image + (view.heldout ? " (held out)" : ""), view.error);
@@ -75,7 +76,8 @@ CommandResult evaluate_command(const EvaluateSettings& settings, CommandContext&
 
 void add_evaluate_command(CLI::App& app, CommandAction& action) {
   auto settings = std::make_shared<EvaluateSettings>();
-  CLI::App* command = app.add_subcommand("evaluate", "Compare a model with a session's photographs, held-out ones apart");
+  CLI::App* command =
+      app.add_subcommand("evaluate", "Compare a model with a session's photographs, held-out ones apart");
   command->add_option("MODEL", settings->model, "Folder of the model")->required();
   command->add_option("SESSION", settings->session, "Session to compare with, as a rule the one it was fitted to")
       ->required();

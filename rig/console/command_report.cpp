@@ -1,12 +1,11 @@
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
 
-#include "drivers/error.h"
 #include "processing/model/model_file.h"
 #include "processing/report/model_report.h"
 #include "rig/console/command.h"
+#include "rig/whole_file.h"
 
 namespace lumitexel {
 namespace {
@@ -16,21 +15,6 @@ namespace fs = std::filesystem;
 struct ReportSettings {
   std::string model, session, out;
 };
-
-// Written beside and renamed: a browser that reloads never meets half a page.
-void write_page(const fs::path& path, const std::string& page) {
-  const fs::path temporary = path.string() + ".writing";
-  std::ofstream file(temporary, std::ios::binary);
-  file << page;
-  file.close();
-  std::error_code error;
-  if (file) fs::rename(temporary, path, error);
-  if (!file || error) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    throw Error(path.string() + ": the report could not be written");
-  }
-}
 
 std::string title_of(const fs::path& model) {
   const fs::path whole = fs::absolute(model).lexically_normal();
@@ -53,11 +37,12 @@ CommandResult report_command(const ReportSettings& settings, CommandContext& con
   }
   const fs::path out = settings.out.empty() ? fs::path(settings.model) / "report.html" : fs::path(settings.out);
   const std::string page = model_report(subject, context.progress);
-  write_page(out, page);
+  write_whole_file(out, page);
 
   CommandResult result;
   result.json = {{"out", out.string()}, {"bytes", page.size()}};
-  result.text = out.string() + ": open it in a browser (" + std::to_string(page.size() / 1024) + " KiB, works offline)\n";
+  result.text =
+      out.string() + ": open it in a browser (" + std::to_string(page.size() / 1024) + " KiB, works offline)\n";
   return result;
 }
 
@@ -65,7 +50,8 @@ CommandResult report_command(const ReportSettings& settings, CommandContext& con
 
 void add_report_command(CLI::App& app, CommandAction& action) {
   auto settings = std::make_shared<ReportSettings>();
-  CLI::App* command = app.add_subcommand("report", "One self-contained HTML page: pictures, errors, materials, timings");
+  CLI::App* command =
+      app.add_subcommand("report", "One self-contained HTML page: pictures, errors, materials, timings");
   command->add_option("MODEL", settings->model, "Folder of the model")->required();
   command->add_option("--session", settings->session, "Session whose photographs are shown beside their re-renderings");
   command->add_option("--out", settings->out, "HTML file to write (default: MODEL/report.html)");

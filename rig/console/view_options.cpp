@@ -84,9 +84,11 @@ std::vector<double> intensities(const std::string& text, int channels, double di
 View parse_view(const ViewOptions& options, int channels) {
   const auto parts = split(options.camera, ';');
   if (parts.size() != 5) throw BadInput("--camera", "'" + options.camera + "'", kCameraForm);
-  const Target look{point(parts[0], "--camera eye"), point(parts[1], "--camera target"), point(parts[2], "--camera up")};
+  const Target look{point(parts[0], "--camera eye"), point(parts[1], "--camera target"),
+                    point(parts[2], "--camera up")};
   const double fov_deg = number(parts[3], "--camera field of view");
-  if (!(fov_deg > 0.0 && fov_deg < 180.0)) throw BadInput("--camera field of view", parts[3], "between 0 and 180 degrees");
+  if (!(fov_deg > 0.0 && fov_deg < 180.0))
+    throw BadInput("--camera field of view", parts[3], "between 0 and 180 degrees");
   const auto size = split(parts[4], 'x');
   if (size.size() != 2) throw BadInput("--camera size", "'" + parts[4] + "'", "WIDTHxHEIGHT");
 

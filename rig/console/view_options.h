@@ -8,9 +8,11 @@
 namespace lumitexel {
 
 struct ViewOptions {
-  std::string camera;           // "eye;target;up;fov;WxH": three points x,y,z in metres, vertical field of view in degrees, pixels
-  std::string light;            // "x,y,z" in metres
-  std::string light_intensity;  // one number or one a channel; empty: a white diffuse surface at the target has radiance 1
+  std::string
+      camera;  // "eye;target;up;fov;WxH": three points x,y,z in metres, vertical field of view in degrees, pixels
+  std::string light;  // "x,y,z" in metres
+  std::string
+      light_intensity;  // one number or one a channel; empty: a white diffuse surface at the target has radiance 1
 };
 
 // Throws BadInput naming the option and the part of it that cannot be used.

@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <ostream>
+#include <sstream>
 
+#include "processing/calibration/import_layout.h"
 #include "processing/calibration/imported_views.h"
 #include "rig/session_store.h"
 #include "tests/unit/bad_input_matcher.h"
@@ -280,24 +283,54 @@ TEST(ImportSession, AStopLeavesNothingBehind) {
   EXPECT_FALSE(std::filesystem::exists(layout.path("made")));
 }
 
-TEST(ImportSession, ReadsASessionOfAnUnrelatedRenderer) {
+NamedText named_text(const std::filesystem::path& path) { return {read_whole_file(path), path.string()}; }
+
+TEST(ImportLayout, JoinsTheViewsOfAnUnrelatedRenderer) {
+  SKIP_WITHOUT_SHARED_DATA("oracle_a");
+  const std::filesystem::path oracle = shared_data() / "oracle_a";
+  const auto views = join_views(named_text(oracle / "cameras.txt"), named_text(oracle / "images.txt"),
+                                named_text(oracle / "lights.csv"));
+  EXPECT_EQ(views.size(), 30u);
+  EXPECT_EQ(std::count_if(views.begin(), views.end(), [](const View& view) { return view.heldout; }), 6);
+}
+
+// The lines of a file that are comments, header, or of one of the images.
+std::string lines_of_images(const std::filesystem::path& path, const std::vector<std::string>& images) {
+  std::istringstream all(read_whole_file(path));
+  std::string kept;
+  for (std::string line; std::getline(all, line);) {
+    const bool of_image = std::any_of(images.begin(), images.end(), [&](const std::string& image) {
+      return line.find(image) != std::string::npos;
+    });
+    if (of_image || line.rfind("image,", 0) == 0) kept += line + "\n" + (path.extension() == ".txt" ? "\n" : "");
+  }
+  return kept;
+}
+
+TEST(ImportSession, ReadsPhotographsOfAnUnrelatedRenderer) {
   SKIP_WITHOUT_SHARED_DATA("oracle_a");
   const TemporaryFolder folder;
   const std::filesystem::path oracle = shared_data() / "oracle_a";
+  const std::vector<std::string> images{"fit_000.exr", "fit_013.exr", "heldout_002.exr"};
+  std::filesystem::copy(oracle / "cameras.txt", folder / "cameras.txt");
+  write_whole_file(folder / "images.txt", lines_of_images(oracle / "images.txt", images));
+  write_whole_file(folder / "lights.csv", lines_of_images(oracle / "lights.csv", images));
   NoProgress progress;
   const ImportSummary summary = import_session(
-      {oracle, oracle / "images", oracle / "lights.csv", oracle / "mesh.ply", oracle / "masks", ""}, folder / "s", progress);
-  EXPECT_EQ(summary.views, 30);
-  EXPECT_EQ(summary.heldout, 6);
-  EXPECT_EQ(summary.channels, 3);
+      {folder.path(), oracle / "images", folder / "lights.csv", oracle / "mesh.ply", oracle / "masks", ""}, folder / "s", progress);
+  EXPECT_EQ(summary.views, 3);
+  EXPECT_EQ(summary.heldout, 1);
   const CalibratedSession session = calibrate_imported(SessionStore::open(folder / "s", OpenMode::ReadOnly), progress);
-  // The mesh's middle is on the object in every view: poses, cameras and masks agree.
+  // Poses, cameras and masks agree: nearly all vertices of the mesh fall on the object. The
+  // masks' outline and the coarse mesh's may differ by a pixel or two of some hundred.
   for (const View& view : session.views) {
     const RadianceImage image = read_radiance_image(view.photograph);
-    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-    for (const Eigen::Vector3d& position : session.mesh.positions) middle += position;
-    const Eigen::Vector2d pixel = view.camera.project(view.camera_from_world * (middle / static_cast<double>(session.mesh.positions.size())));
-    EXPECT_EQ(image.flag(static_cast<int>(pixel.x()), static_cast<int>(pixel.y())), 0) << view.name;
+    int on_object = 0;
+    for (const Eigen::Vector3d& position : session.mesh.positions) {
+      const Eigen::Vector2d pixel = view.camera.project(view.camera_from_world * position);
+      on_object += view.camera.contains(pixel) && image.flag(static_cast<int>(pixel.x()), static_cast<int>(pixel.y())) == 0;
+    }
+    EXPECT_GT(on_object, 0.98 * static_cast<double>(session.mesh.positions.size())) << view.name;
     EXPECT_EQ(image.flag(0, 0), kPixelOutside) << view.name;
   }
 }

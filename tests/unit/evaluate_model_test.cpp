@@ -1,0 +1,142 @@
+#include "processing/model/evaluate_model.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "processing/image/radiance_image.h"
+#include "processing/model/render_view.h"
+#include "tests/unit/bad_input_matcher.h"
+#include "tests/unit/plain_models.h"
+#include "tests/unit/temporary_folder.h"
+
+namespace lumitexel {
+namespace {
+
+using Json = nlohmann::json;
+constexpr double kRounding = 1e-6;
+constexpr int kSize = 16;
+
+// A square of radiance 0.5 photographed twice: for the fit as it is, held out under a light twice as bright as is said.
+class EvaluateModel : public testing::Test {
+ protected:
+  EvaluateModel() : model_(model_of(square_mesh(), 2, 2, diffuse_brdf(0.5, 0.5, 0.5))) {
+    model_.single = diffuse_brdf(0.25, 0.25, 0.25);
+    session_.key = "bench";
+    session_.mesh = model_.mesh;
+    add_view("fit", false, 0.5f);
+    add_view("heldout", true, 1.0f);
+  }
+
+  void add_view(const std::string& name, bool heldout, float value) {
+    View view = view_from_above(kSize, 5.0);
+    view.name = name;
+    view.heldout = heldout;
+    view.photograph = folder_ / (name + ".exr");
+    RadianceImage photograph;
+    photograph.radiance = Image(kSize, kSize, 3, value);
+    photograph.variance = Image(kSize, kSize, 3);
+    photograph.flags.assign(kSize * kSize, 0);
+    write_radiance_image(view.photograph, photograph);
+    session_.views.push_back(view);
+  }
+  void edit_photograph(std::size_t view, const std::function<void(RadianceImage&)>& edit) {
+    RadianceImage photograph = read_radiance_image(session_.views[view].photograph);
+    edit(photograph);
+    write_radiance_image(session_.views[view].photograph, photograph);
+  }
+  Evaluation evaluated() {
+    NoProgress progress;
+    return evaluate_model(model_, session_, progress);
+  }
+
+  const TemporaryFolder folder_;
+  Model model_;
+  CalibratedSession session_;
+};
+
+TEST_F(EvaluateModel, EachSplitAndStageHasItsOwnError) {
+  const Evaluation evaluation = evaluated();
+  EXPECT_TRUE(evaluation.same_session);
+  EXPECT_EQ(evaluation.last_stage, FitStage::Projection);
+  EXPECT_NEAR(evaluation.fit[0]->relative_rms, 0.5, kRounding);
+  EXPECT_NEAR(evaluation.fit[2]->relative_rms, 0.0, kRounding);
+  EXPECT_NEAR(evaluation.heldout[0]->relative_rms, 0.75, kRounding);
+  EXPECT_NEAR(evaluation.heldout[1]->relative_rms, 0.5, kRounding);
+  EXPECT_NEAR(evaluation.heldout[2]->relative_rms, 0.5, kRounding);
+  EXPECT_NEAR(evaluation.heldout[2]->psnr_db, 10.0 * std::log10(4.0), 1e-4);
+  EXPECT_EQ(evaluation.views[1].object_pixels, kSize * kSize);
+}
+
+TEST_F(EvaluateModel, SaturatedDefectiveAndOutsidePixelsDoNotCountDarkOnesDo) {
+  edit_photograph(0, [](RadianceImage& photograph) {
+    const std::uint8_t flags[] = {kPixelSaturated, kPixelDefective, kPixelOutside};
+    for (int i = 0; i < 3; ++i) {
+      photograph.flags[static_cast<std::size_t>(i)] = flags[i];
+      photograph.radiance.at(i, 0, 1) = 1e6f;
+    }
+    photograph.flags[3] = kPixelDark;
+  });
+  const Evaluation evaluation = evaluated();
+  EXPECT_EQ(evaluation.views[0].object_pixels, kSize * kSize - 3);
+  EXPECT_NEAR(evaluation.fit[2]->relative_rms, 0.0, kRounding);
+}
+
+TEST_F(EvaluateModel, AMaskedPixelThatTheMeshMissesCountsAsBlack) {
+  session_.views[0].camera.principal_x_px += 4;  // the left quarter of the picture now misses the square
+  Evaluation evaluation = evaluated();
+  EXPECT_EQ(evaluation.views[0].object_pixels, kSize * (kSize - 4))
+      << "without a mask the mesh says what the object is";
+  EXPECT_NEAR(evaluation.fit[2]->relative_rms, 0.0, kRounding);
+  edit_photograph(0, [](RadianceImage& photograph) { photograph.flags.back() = kPixelOutside; });
+  evaluation = evaluated();
+  EXPECT_EQ(evaluation.views[0].object_pixels, kSize * kSize - 1);
+  EXPECT_NEAR(evaluation.fit[2]->relative_rms, std::sqrt(4.0 * kSize / (kSize * kSize - 1)), kRounding);
+}
+
+TEST_F(EvaluateModel, APhotographOfAnotherSizeIsNamed) {
+  session_.views[1].camera.width_px = kSize + 1;
+  EXPECT_BAD_INPUT(evaluated(), "heldout.exr", "16x16", "17x16");
+}
+
+TEST_F(EvaluateModel, TheJsonHasEveryKeyThatIsPromised) {
+  const Json json = Json::parse(evaluation_json(evaluated()));
+  EXPECT_EQ(json.at("rms").at("cluster"), 0.05);
+  EXPECT_TRUE(json.at("rms").at("pfa").is_null());
+  EXPECT_TRUE(json.at("rms").at("normal").is_null());
+  EXPECT_NEAR(json.at("heldout").at("relative_rms").get<double>(), 0.5, kRounding);
+  EXPECT_NEAR(json.at("heldout_by_stage").at("single").at("relative_rms").get<double>(), 0.75, kRounding);
+  EXPECT_EQ(json.at("heldout_by_stage").at("projection"), json.at("heldout"));
+  EXPECT_TRUE(json.at("heldout_by_stage").at("pfa").is_null());
+  EXPECT_TRUE(json.at("heldout_by_stage").at("normal").is_null());
+  ASSERT_EQ(json.at("views").size(), 2u);
+  EXPECT_EQ(json.at("views")[0].at("image"), "fit");
+  EXPECT_EQ(json.at("views")[0].at("split"), "fit");
+  EXPECT_EQ(json.at("views")[1].at("split"), "heldout");
+  for (const char* key : {"relative_rms", "clipped_rms", "sqrt_rms", "psnr_db"}) {
+    EXPECT_TRUE(json.at("views")[1].at(key).is_number()) << key;
+    EXPECT_TRUE(json.at("fit").contains(key)) << key;
+  }
+  EXPECT_TRUE(json.contains("rms_by_channel") && json.contains("rms_by_material"));
+  EXPECT_EQ(json.at("same_session"), true);
+}
+
+TEST_F(EvaluateModel, AnotherSessionIsAllowedAndSaidAndMissingFiguresAreNull) {
+  session_.key = "another";
+  session_.views.pop_back();
+  const Json json = Json::parse(evaluation_json(evaluated()));
+  EXPECT_EQ(json.at("same_session"), false);
+  EXPECT_TRUE(json.at("heldout").at("relative_rms").is_null()) << "there is no held-out view";
+}
+
+TEST_F(EvaluateModel, AModelWithoutProjectionIsJudgedByItsClusters) {
+  model_.materials[0].basis.clear();
+  model_.weights = Image(2, 2, 0);
+  const Json json = Json::parse(evaluation_json(evaluated()));
+  EXPECT_EQ(json.at("stage"), "cluster");
+  EXPECT_TRUE(json.at("heldout_by_stage").at("projection").is_null());
+  EXPECT_EQ(json.at("heldout_by_stage").at("cluster"), json.at("heldout"));
+}
+
+}  // namespace
+}  // namespace lumitexel

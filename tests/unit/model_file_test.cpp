@@ -1,0 +1,247 @@
+#include "processing/model/model_file.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "processing/image/exr_file.h"
+#include "processing/surface/mesh_file.h"
+#include "rig/whole_file.h"
+#include "tests/unit/bad_input_matcher.h"
+#include "tests/unit/plain_models.h"
+#include "tests/unit/temporary_folder.h"
+
+namespace lumitexel {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+LafortuneBrdf odd_brdf(std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  LafortuneBrdf brdf = diffuse_brdf(unit(random), unit(random), unit(random));
+  auto& lobe = brdf.lobes.emplace_back();
+  for (auto& channel : lobe) channel = {10.0 * unit(random) - 5.0, unit(random), 15.0 * unit(random) - 4.0};
+  lobe[1].log_peak = -std::numeric_limits<double>::infinity();  // switched off
+  lobe[2].log_peak = 800.0;                                     // its exponential overflows
+  return brdf;
+}
+
+// Two materials with five and two bases, so that two weight files are needed, and numbers that no short decimal holds.
+Model odd_model() {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+  Model model = model_of(sphere_mesh(8, 4), 6, 5, odd_brdf(random));
+  model.materials = {{odd_brdf(random), {}}, {odd_brdf(random), {}}};
+  for (int k = 0; k < 5; ++k) model.materials[0].basis.push_back(odd_brdf(random));
+  for (int k = 0; k < 2; ++k) model.materials[1].basis.push_back(odd_brdf(random));
+  model.weights = Image(6, 5, 5);
+  for (float& value : model.weights.data) value = unit(random);
+  for (float& value : model.uncertainty.data) value = unit(random);
+  for (std::size_t t = 0; t < model.material.size(); ++t) {
+    model.material[t] = static_cast<std::int16_t>(static_cast<int>(t % 3) - 1);
+    const Eigen::Vector3f normal = Eigen::Vector3f(unit(random), unit(random), 0.1f).normalized();
+    std::copy(normal.data(), normal.data() + 3, &model.normal.data[3 * t]);
+  }
+  return model;
+}
+
+void expect_equal(const LafortuneBrdf& a, const LafortuneBrdf& b) {
+  EXPECT_EQ(a.channels, b.channels);
+  EXPECT_EQ(a.diffuse, b.diffuse);
+  ASSERT_EQ(a.lobes.size(), b.lobes.size());
+  for (std::size_t l = 0; l < a.lobes.size(); ++l) {
+    for (std::size_t c = 0; c < kMaxChannels; ++c) {
+      EXPECT_EQ(a.lobes[l][c].log_peak, b.lobes[l][c].log_peak);
+      EXPECT_EQ(a.lobes[l][c].phi, b.lobes[l][c].phi);
+      EXPECT_EQ(a.lobes[l][c].log_exponent, b.lobes[l][c].log_exponent);
+    }
+  }
+}
+
+void expect_equal(const Model& a, const Model& b) {
+  EXPECT_EQ(a.channels, b.channels);
+  EXPECT_EQ(a.width, b.width);
+  EXPECT_EQ(a.height, b.height);
+  expect_equal(a.single, b.single);
+  ASSERT_EQ(a.materials.size(), b.materials.size());
+  for (std::size_t m = 0; m < a.materials.size(); ++m) {
+    expect_equal(a.materials[m].brdf, b.materials[m].brdf);
+    ASSERT_EQ(a.materials[m].basis.size(), b.materials[m].basis.size());
+    for (std::size_t k = 0; k < a.materials[m].basis.size(); ++k) {
+      expect_equal(a.materials[m].basis[k], b.materials[m].basis[k]);
+    }
+  }
+  EXPECT_EQ(a.material, b.material);
+  EXPECT_EQ(a.weights.data, b.weights.data);
+  EXPECT_EQ(a.normal.data, b.normal.data);
+  EXPECT_EQ(a.uncertainty.data, b.uncertainty.data);
+  EXPECT_EQ(a.samples.data, b.samples.data);
+  EXPECT_EQ(a.mesh.positions, b.mesh.positions);
+  EXPECT_EQ(a.mesh.triangles, b.mesh.triangles);
+  EXPECT_EQ(Json::parse(a.provenance_json), Json::parse(b.provenance_json));
+}
+
+TEST(ModelFile, EverythingComesBackToTheLastBit) {
+  const TemporaryFolder folder;
+  const Model written = odd_model();
+  write_model(folder / "model", written);
+  expect_equal(read_model(folder / "model"), written);
+}
+
+TEST(ModelFile, OneChannelComesBackToo) {
+  const TemporaryFolder folder;
+  Model written = model_of(square_mesh(), 2, 2, diffuse_brdf(0.25, 0, 0));
+  written.channels = written.single.channels = 1;
+  written.materials[0].brdf.channels = written.materials[0].basis[0].channels = 1;
+  write_model(folder / "model", written);
+  expect_equal(read_model(folder / "model"), written);
+}
+
+TEST(ModelFile, AModelIsReplacedAsAWholeAndNothingElseIs) {
+  const TemporaryFolder folder;
+  write_model(folder / "model", odd_model());
+  const Model second = model_of(square_mesh(), 2, 2, diffuse_brdf(0.25, 0.5, 0.75));
+  write_model((folder / "model").string() + "/", second);
+  expect_equal(read_model(folder / "model"), second);
+  EXPECT_FALSE(fs::exists(folder / "model" / "weights_1.exr")) << "left over from the first";
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1) << "left over beside the model";
+
+  fs::create_directory(folder / "letters");
+  write_whole_file(folder / "letters" / "love.txt", "dear");
+  EXPECT_BAD_INPUT(write_model(folder / "letters", second), "letters", "not a model");
+  EXPECT_TRUE(fs::exists(folder / "letters" / "love.txt"));
+}
+
+TEST(ModelFile, AModelWhoseMapsDoNotFitIsNotWritten) {
+  const TemporaryFolder folder;
+  Model model = odd_model();
+  model.normal = Image(5, 5, 3);
+  EXPECT_THROW(write_model(folder / "model", model), Error);
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+// A written model of which one file is then damaged.
+class DamagedModel : public testing::Test {
+ protected:
+  DamagedModel() { write_model(model_, odd_model()); }
+  fs::path file(const std::string& name) const { return model_ / name; }
+
+  void edit_json(const std::string& name, const std::string& pointer, const Json& value) {
+    Json document = Json::parse(read_whole_file(file(name)));
+    document[Json::json_pointer(pointer)] = value;
+    write_whole_file(file(name), document.dump());
+  }
+  void erase_key(const std::string& name, const std::string& parent, const std::string& key) {
+    Json document = Json::parse(read_whole_file(file(name)));
+    document[Json::json_pointer(parent)].erase(key);
+    write_whole_file(file(name), document.dump());
+  }
+  void edit_plane(const std::string& name, const std::string& plane, std::size_t texel, float value) {
+    ExrImage exr = read_exr(file(name));
+    for (ExrPlane& candidate : exr.planes) {
+      if (candidate.name == plane) candidate.data[texel] = value;
+    }
+    write_exr(file(name), exr);
+  }
+
+  const TemporaryFolder folder_;
+  const fs::path model_ = folder_ / "model";
+};
+
+TEST_F(DamagedModel, EveryMissingFileIsNamed) {
+  EXPECT_BAD_INPUT(read_model(folder_ / "nowhere"), "nowhere");
+  for (const std::string name : {"model.json", "basis.json", "cluster.exr", "weights_0.exr", "weights_1.exr",
+                                 "normal.exr", "uncertainty.exr", "samples.exr", "mesh.ply"}) {
+    fs::rename(file(name), file("hidden"));
+    EXPECT_BAD_INPUT(read_model(model_), name);
+    fs::rename(file("hidden"), file(name));
+  }
+}
+
+TEST_F(DamagedModel, EveryTruncatedFileIsNamed) {
+  for (const std::string name :
+       {"model.json", "basis.json", "cluster.exr", "weights_1.exr", "normal.exr", "mesh.ply"}) {
+    const std::string bytes = read_whole_file(file(name));
+    write_whole_file(file(name), bytes.substr(0, bytes.size() / 2));
+    EXPECT_BAD_INPUT(read_model(model_), name);
+    write_whole_file(file(name), bytes);
+  }
+}
+
+struct JsonDamage {
+  std::string file, pointer;
+  Json value;
+  std::vector<std::string> named;
+};
+
+TEST_F(DamagedModel, EveryWrongFieldIsNamed) {
+  const std::string lobe = "/materials/0/basis/3/lobes/0/1/";
+  const std::string lobe_name = "basis.json.materials[0].basis[3].lobes[0][1].";
+  const std::vector<JsonDamage> damages{
+      {"model.json", "/format", "something else", {"model.json", "format"}},
+      {"model.json", "/version", 2, {"model.json", "version", "2"}},
+      {"model.json", "/channels", {"R", "G"}, {"model.json", "channels"}},
+      {"model.json", "/atlas/width", 7, {"cluster.exr", "6x5", "7x5"}},
+      {"model.json", "/atlas/height", -1, {"model.json", "atlas", "height", "-1"}},
+      {"model.json", "/materials", 3, {"basis.json", "materials", "3"}},
+      {"model.json", "/basis_size", 6, {"basis.json", "6"}},
+      {"model.json", "/provenance", "lost", {"model.json", "provenance"}},
+      {"model.json", "/provenance/rms", 0.1, {"model.json", "provenance.rms"}},
+      {"basis.json", "/single/diffuse/1", -0.5, {"basis.json.single.diffuse[1]", "-0.5"}},
+      {"basis.json", "/single/diffuse/2", nullptr, {"basis.json.single.diffuse[2]"}},
+      {"basis.json", "/single/diffuse", {0.1, 0.2}, {"basis.json.single.diffuse", "2 entries"}},
+      {"basis.json", lobe + "log_exponent", 12.0, {lobe_name + "log_exponent"}},
+      {"basis.json", lobe + "phi_rad", "north", {lobe_name + "phi_rad", "north"}},
+      {"basis.json", lobe + "exponent", 1e6, {lobe_name + "exponent", "logarithm"}},
+      {"basis.json", lobe + "peak", 0.5, {lobe_name + "peak", "logarithm"}},
+      {"basis.json", lobe + "log_peak", "loud", {lobe_name + "log_peak"}}};
+  for (const JsonDamage& damage : damages) {
+    const std::string intact = read_whole_file(file(damage.file));
+    edit_json(damage.file, damage.pointer, damage.value);
+    for (const std::string& part : damage.named) EXPECT_BAD_INPUT(read_model(model_), part) << damage.pointer;
+    write_whole_file(file(damage.file), intact);
+  }
+}
+
+TEST_F(DamagedModel, MissingKeysAreNamed) {
+  for (const std::string key : {"diffuse", "lobes"}) {
+    const std::string intact = read_whole_file(file("basis.json"));
+    erase_key("basis.json", "/materials/1/brdf", key);
+    EXPECT_BAD_INPUT(read_model(model_), "basis.json.materials[1].brdf", key);
+    write_whole_file(file("basis.json"), intact);
+  }
+  erase_key("model.json", "/atlas", "width");
+  EXPECT_BAD_INPUT(read_model(model_), "model.json", "atlas", "width");
+}
+
+struct MapDamage {
+  std::string file, plane;
+  float value;
+};
+
+TEST_F(DamagedModel, EveryImpossibleTexelIsNamed) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<MapDamage> damages{{"cluster.exr", "Y", 2.0f},      {"weights_0.exr", "B", kNan},
+                                       {"weights_1.exr", "R", -0.001f}, {"normal.exr", "G", 1.5f},
+                                       {"normal.exr", "R", kNan},       {"uncertainty.exr", "Y", kNan},
+                                       {"samples.exr", "Y", -1.0f}};
+  for (const MapDamage& damage : damages) {
+    const std::string intact = read_whole_file(file(damage.file));
+    edit_plane(damage.file, damage.plane, 6 * 3 + 4, damage.value);
+    EXPECT_BAD_INPUT(read_model(model_), damage.file, "(4, 3)");
+    write_whole_file(file(damage.file), intact);
+  }
+}
+
+TEST_F(DamagedModel, AMeshWithoutTextureCoordinatesIsNamed) {
+  Mesh mesh = read_mesh(file("mesh.ply"));
+  mesh.texcoords.clear();
+  write_ply(file("mesh.ply"), mesh);
+  EXPECT_BAD_INPUT(read_model(model_), "mesh.ply", "texture coordinates");
+}
+
+}  // namespace
+}  // namespace lumitexel

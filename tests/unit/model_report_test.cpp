@@ -1,0 +1,127 @@
+#include "processing/report/model_report.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "processing/image/tone_map.h"
+#include "processing/report/html.h"
+#include "processing/report/view_pictures.h"
+#include "tests/unit/plain_models.h"
+#include "tests/unit/temporary_folder.h"
+
+namespace lumitexel {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class ModelReport : public testing::Test {
+ protected:
+  ModelReport() : model_(model_of(sphere_mesh(24, 12), 4, 4, diffuse_brdf(0.125, 0.2, 0.3))) {
+    model_.provenance_json = R"({"session_key": "bench", "samples": 123456, "rms": {"single": 0.0987, "cluster": 0.0531,
+      "projection": 0.0246}, "rms_by_channel": {"single": [0.0911, 0.0922, 0.0933]},
+      "rms_by_material": {"cluster": [0.0531], "projection": [0.0246]},
+      "stages": [{"name": "cluster </script><b>", "seconds": 12.5, "peak_bytes": 104857600}]})";
+    session_.key = "bench";
+    session_.mesh = model_.mesh;
+    View view = view_from_above(32, 3.0);
+    view.name = "evening & <view>";
+    view.heldout = true;
+    view.photograph = folder_ / "photograph.exr";
+    RadianceImage photograph{Image(32, 32, 3, 0.1f), Image(32, 32, 3), std::vector<std::uint8_t>(32 * 32, 0)};
+    write_radiance_image(view.photograph, photograph);
+    session_.views.push_back(view);
+  }
+
+  std::string page(bool with_session) {
+    NoProgress progress;
+    ReportSubject subject{"bird", model_};
+    if (with_session) {
+      evaluation_ = evaluate_model(model_, session_, progress);
+      subject.session = &session_;
+      subject.evaluation = &evaluation_;
+    }
+    return model_report(subject, progress);
+  }
+
+  const TemporaryFolder folder_;
+  Model model_;
+  CalibratedSession session_;
+  Evaluation evaluation_;
+};
+
+TEST_F(ModelReport, NeedsNothingButItself) {
+  const std::string html = page(true);
+  for (const char* outside : {"http", "<link", "@import", "url(", "href=", "//cdn"})
+    EXPECT_THAT(html, Not(HasSubstr(outside)));
+  std::size_t pictures = 0;
+  for (std::size_t at = html.find("src="); at != std::string::npos; at = html.find("src=", at + 1), ++pictures) {
+    EXPECT_EQ(html.substr(at, 33), "src=\"data:image/png;base64,iVBORw") << "a PNG's first bytes";
+  }
+  EXPECT_EQ(pictures, 5u) << "photograph, rendering, difference, map, sphere";
+}
+
+TEST_F(ModelReport, SaysTheNumbersOfTheFitAndOfTheComparison) {
+  const std::string html = page(true);
+  for (const char* text : {"0.0987", "0.0531", "0.0246", "0.0911", "0.249", "123456", "12.5 s", "100 MiB"}) {
+    EXPECT_THAT(html, HasSubstr(text));
+  }
+  EXPECT_THAT(html, HasSubstr(html::number(evaluation_.heldout[2]->relative_rms)));
+  EXPECT_THAT(html, HasSubstr(html::number(evaluation_.heldout[0]->psnr_db)));
+}
+
+TEST_F(ModelReport, NamesFromFilesCannotBecomeMarkup) {
+  const std::string html = page(true);
+  EXPECT_THAT(html, HasSubstr("evening &amp; &lt;view&gt;"));
+  EXPECT_THAT(html, HasSubstr("cluster &lt;/script&gt;&lt;b&gt;"));
+  const std::string open = "<script type=\"application/json\" id=\"data\">";
+  const std::size_t start = html.find(open) + open.size();
+  const auto data = nlohmann::json::parse(html.substr(start, html.find("</script>") - start));
+  EXPECT_EQ(data.at("provenance").at("stages")[0].at("name"), "cluster </script><b>");
+  EXPECT_EQ(data.at("evaluation"), nlohmann::json::parse(evaluation_json(evaluation_)));
+  EXPECT_EQ(data.at("texels_by_material"), nlohmann::json::array({16}));
+}
+
+TEST_F(ModelReport, WithoutASessionTheModelAloneIsShown) {
+  const std::string html = page(false);
+  EXPECT_THAT(html, HasSubstr("--session"));
+  EXPECT_THAT(html, HasSubstr("0.0246"));
+  EXPECT_THAT(html, Not(HasSubstr("<svg")));
+}
+
+TEST_F(ModelReport, PicturesShareOneExposureAndTheDifferenceHasASign) {
+  const ViewRenderer renderer(model_);
+  const ViewPictures pictures = make_view_pictures(renderer, session_.views[0], 3, FitStage::Projection, 100);
+  EXPECT_NEAR(pictures.white, 0.1, 1e-7);
+  const int middle = pictures.photograph.width / 2;
+  EXPECT_EQ(pictures.photograph.at(middle, middle, 0), 1.0f);
+  // The sphere's top has radiance kd under a light of irradiance 1: brighter than 0.1 in every channel, clipped.
+  EXPECT_EQ(pictures.rendering.at(middle, middle, 0), 1.0f);
+  const auto brighter = false_colour(1.0);
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(pictures.difference.at(middle, middle, c), brighter[static_cast<std::size_t>(c)], 1e-6);
+}
+
+TEST(Html, NumbersKeepTheirSignificantDigits) {
+  EXPECT_EQ(html::number(0.012345), "0.0123");
+  EXPECT_EQ(html::number(12.345), "12.3");
+  EXPECT_EQ(html::number(1234.5), "1234");
+  EXPECT_EQ(html::number(3.0), "3");
+  EXPECT_EQ(html::number(0.0), "0");
+  EXPECT_EQ(html::number(1.5e-7), "1.50e-07");
+  EXPECT_EQ(html::number(std::nan("")), "–");
+}
+
+TEST(ToneMap, FollowsTheSrgbCurve) {
+  EXPECT_NEAR(srgb_encoded(0.5f), 0.735357f, 1e-5f);   // IEC 61966-2-1
+  EXPECT_NEAR(srgb_encoded(0.001f), 0.01292f, 1e-7f);  // its linear part
+  EXPECT_EQ(srgb_encoded(2.0f), 1.0f);
+  EXPECT_EQ(srgb_encoded(-1.0f), 0.0f);
+  EXPECT_EQ(srgb_encoded(std::nanf("")), 0.0f);
+  Image gray(1, 1, 1, 2.0f);
+  EXPECT_NEAR(tone_mapped(gray, 4.0).at(0, 0, 2), 0.735357f, 1e-5f);
+}
+
+}  // namespace
+}  // namespace lumitexel
