@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "processing/image/linear_sensor.h"
 #include "sim/seeded_random.h"
 
 namespace lumitexel {
@@ -14,18 +15,6 @@ namespace {
 constexpr std::uint64_t kHotPixelStream = 400;
 
 }  // namespace
-
-int mosaic_channel(Mosaic mosaic, int x, int y) {
-  const std::size_t place = static_cast<std::size_t>((y & 1) * 2 + (x & 1));
-  switch (mosaic) {
-    case Mosaic::Mono: return -1;
-    case Mosaic::Rggb: return std::array{0, 1, 1, 2}[place];
-    case Mosaic::Bggr: return std::array{2, 1, 1, 0}[place];
-    case Mosaic::Grbg: return std::array{1, 0, 2, 1}[place];
-    case Mosaic::Gbrg: return std::array{1, 2, 0, 1}[place];
-  }
-  return -1;
-}
 
 SimulatedSensor::SimulatedSensor(const CameraDescription& camera, const SimulationSettings& settings)
     : camera_(camera), settings_(settings) {}
@@ -47,8 +36,8 @@ double SimulatedSensor::dark_current_e_per_s(int x, int y) const {
 }
 
 double SimulatedSensor::radiance_seen(const Image& radiance, int x, int y) const {
-  const int channel = mosaic_channel(camera_.limits.mosaic, x, y);
-  if (channel >= 0) return radiance.at(x, y, channel);
+  const Mosaic mosaic = camera_.limits.mosaic;
+  if (mosaic != Mosaic::Mono) return radiance.at(x, y, mosaic_channel(mosaic, x, y));
   return (radiance.at(x, y, 0) + radiance.at(x, y, 1) + radiance.at(x, y, 2)) / 3.0;
 }
 

@@ -35,7 +35,4 @@ class SimulatedSensor {
   SimulationSettings settings_;
 };
 
-// Colour channel (0 red, 1 green, 2 blue) under the filter of pixel (x, y); -1 for a mono sensor.
-int mosaic_channel(Mosaic mosaic, int x, int y);
-
 }  // namespace lumitexel
