@@ -2,7 +2,9 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "processing/image/linear_sensor.h"
@@ -23,32 +25,66 @@ struct Sample {
 using Parameters = Eigen::VectorXd;
 constexpr Eigen::Index kBackground = 5, kFirstAmplitude = 6;
 
-double profile(const Parameters& p, double x, double y) {
-  double sum = 0.0;
-  for (int j = 0; j < kSubsamples; ++j) {
-    for (int i = 0; i < kSubsamples; ++i) {
-      const double dx = x + (i + 0.5) / kSubsamples - 0.5 - p[0], dy = y + (j + 0.5) / kSubsamples - 0.5 - p[1];
-      const double a = p[2] * dx, b = p[3] * dx + p[4] * dy;
-      const double q = 1.0 + a * a + b * b;
-      sum += 1.0 / (q * q);
-    }
+// Where the peak lives: t(p) = (across_x . u(p), across_y . u(p)), u fixed for a place in the picture, the two rows
+// following the centre. In the picture's plane u = (x, y, 1); on a sphere u is the normal.
+class Domain {
+ public:
+  explicit Domain(const std::optional<SphereInView>& sphere) : sphere_(sphere) {}
+
+  struct Place {
+    Eigen::Vector3d u;
+    double weight;
+  };
+  std::optional<Place> at(double x, double y) const {
+    if (!sphere_) return Place{{x, y, 1.0}, 1.0};
+    const Eigen::Vector3d view = sphere_->camera.unproject({x, y});
+    const auto mirrored = mirrored_ray(sphere_->sphere, {Eigen::Vector3d::Zero(), view});
+    if (!mirrored) return std::nullopt;
+    const Eigen::Vector3d normal = (mirrored->origin - sphere_->sphere.centre) / sphere_->sphere.radius_m;
+    // At the rim the model's 1 / cosine has no bound; shadowing, which it leaves out, would take it back.
+    constexpr double kLeastCosine = 0.1;
+    return Place{normal, 1.0 / std::max(kLeastCosine, -normal.dot(view))};
   }
-  return sum / (kSubsamples * kSubsamples);
-}
+
+  using Rows = Eigen::Matrix<double, 2, 3>;
+  std::optional<Rows> rows(double centre_x, double centre_y) const {
+    Rows rows;
+    if (!sphere_) {
+      rows << 1.0, 0.0, -centre_x, 0.0, 1.0, -centre_y;
+      return rows;
+    }
+    const auto centre = at(centre_x, centre_y);
+    if (!centre) return std::nullopt;
+    const double radius_px = sphere_->camera.focal_x_px * sphere_->sphere.radius_m / sphere_->sphere.centre.z();
+    const Eigen::Vector3d n0 = centre->u;
+    const Eigen::Vector3d across = (Eigen::Vector3d::UnitX() - n0.x() * n0).normalized();
+    rows.row(0) = radius_px * across.transpose();
+    rows.row(1) = radius_px * n0.cross(across).transpose();
+    return rows;
+  }
+
+ private:
+  std::optional<SphereInView> sphere_;
+};
 
 class PeakModel {
  public:
-  PeakModel(std::vector<Sample> samples, const std::optional<ColourBalance>& balance)
-      : samples_(std::move(samples)), balance_(balance) {}
+  PeakModel(const std::vector<Sample>& samples, const std::optional<ColourBalance>& balance, const Domain& domain)
+      : balance_(balance), domain_(domain) {
+    for (const Sample& sample : samples) add(sample);
+  }
+  std::size_t size() const { return samples_.size(); }
 
+  // Not finite where the centre has left the sphere.
   Eigen::VectorXd residuals(const Parameters& p) const {
     Eigen::VectorXd r(static_cast<Eigen::Index>(samples_.size()));
+    const auto rows = domain_.rows(p[0], p[1]);
+    if (!rows) return r.setConstant(std::numeric_limits<double>::quiet_NaN());
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       const Sample& s = samples_[i];
-      const auto c = static_cast<std::size_t>(s.channel);
-      const double gain = balance_ ? (*balance_)[c] : 1.0;
+      const double gain = balance_ ? (*balance_)[static_cast<std::size_t>(s.channel)] : 1.0;
       const double amplitude = p[kFirstAmplitude + (balance_ ? 0 : s.channel)];
-      r[static_cast<Eigen::Index>(i)] = (gain * (p[kBackground] + amplitude * profile(p, s.x, s.y)) - s.value) / s.sigma;
+      r[static_cast<Eigen::Index>(i)] = (gain * (p[kBackground] + amplitude * profile(p, *rows, i)) - s.value) / s.sigma;
     }
     return r;
   }
@@ -66,8 +102,37 @@ class PeakModel {
   }
 
  private:
-  std::vector<Sample> samples_;
+  static constexpr std::size_t kPlaces = kSubsamples * kSubsamples;
+
+  void add(const Sample& sample) {
+    std::array<Domain::Place, kPlaces> places;
+    for (std::size_t i = 0; i < kPlaces; ++i) {
+      const double dx = (static_cast<double>(i % kSubsamples) + 0.5) / kSubsamples - 0.5;
+      const double dy = (static_cast<double>(i / kSubsamples) + 0.5) / kSubsamples - 0.5;
+      const auto place = domain_.at(sample.x + dx, sample.y + dy);
+      if (!place) return;  // off the sphere
+      places[i] = *place;
+    }
+    samples_.push_back(sample);
+    places_.insert(places_.end(), places.begin(), places.end());
+  }
+
+  double profile(const Parameters& p, const Domain::Rows& rows, std::size_t sample) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < kPlaces; ++i) {
+      const Domain::Place& place = places_[sample * kPlaces + i];
+      const Eigen::Vector2d t = rows * place.u;
+      const double a = p[2] * t.x(), b = p[3] * t.x() + p[4] * t.y();
+      const double q = 1.0 + a * a + b * b;
+      sum += place.weight / (q * q);
+    }
+    return sum / static_cast<double>(kPlaces);
+  }
+
   std::optional<ColourBalance> balance_;
+  Domain domain_;
+  std::vector<Sample> samples_;
+  std::vector<Domain::Place> places_;  // kPlaces for each sample
 };
 
 std::vector<Sample> usable_samples(const MosaicRadiance& image, const Eigen::Vector2d& start, int reach_px) {
@@ -131,15 +196,16 @@ bool minimise(const PeakModel& model, Parameters& p) {
 }  // namespace
 
 std::optional<FittedHighlight> fit_highlight(const MosaicRadiance& image, const Eigen::Vector2d& start, int reach_px,
-                                             const std::optional<ColourBalance>& balance) {
+                                             const std::optional<ColourBalance>& balance,
+                                             const std::optional<SphereInView>& sphere) {
   const bool one_amplitude = balance.has_value() || image.mosaic == Mosaic::Mono;
   const std::optional<ColourBalance> used = image.mosaic == Mosaic::Mono ? ColourBalance{1, 1, 1} : balance;
-  std::vector<Sample> samples = usable_samples(image, start, reach_px);
-  const std::size_t kLeastSamples = 20;  // about twice the unknowns
-  if (samples.size() < kLeastSamples) return std::nullopt;
+  const std::vector<Sample> samples = usable_samples(image, start, reach_px);
+  const PeakModel model(samples, used, Domain(sphere));
+  constexpr std::size_t kLeastSamples = 20;  // about twice the unknowns
+  if (model.size() < kLeastSamples) return std::nullopt;
   Parameters p = start_values(samples, start, one_amplitude);
-  const auto freedom = static_cast<double>(samples.size()) - static_cast<double>(p.size());
-  const PeakModel model(std::move(samples), used);
+  const auto freedom = static_cast<double>(model.size()) - static_cast<double>(p.size());
   if (!minimise(model, p)) return std::nullopt;
   const Eigen::MatrixXd j = model.jacobian(p);
   const Eigen::MatrixXd covariance = (j.transpose() * j).inverse() * std::max(1.0, model.residuals(p).squaredNorm() / freedom);
