@@ -30,7 +30,8 @@ CodeResponse CodeResponse::from_csv(std::string_view text, const std::string& wh
       throw BadInput(line.place + ": code", std::string(fields[0]), "more than in the line before");
     }
     if (point.linear < (curve.empty() ? 0.0 : curve.back().linear)) {
-      throw BadInput(line.place + ": linear", std::string(fields[1]), "no less than in the line before, and not negative");
+      throw BadInput(line.place + ": linear", std::string(fields[1]),
+                     "no less than in the line before, and not negative");
     }
     curve.push_back(point);
   }
@@ -43,9 +44,12 @@ CodeResponse CodeResponse::from_csv(std::string_view text, const std::string& wh
 
 double CodeResponse::radiance(double fraction) const {
   switch (kind_) {
-    case Kind::Linear: return fraction;
-    case Kind::Srgb: return fraction <= 0.04045 ? fraction / 12.92 : std::pow((fraction + 0.055) / 1.055, 2.4);
-    case Kind::Curve: break;
+    case Kind::Linear:
+      return fraction;
+    case Kind::Srgb:
+      return fraction <= 0.04045 ? fraction / 12.92 : std::pow((fraction + 0.055) / 1.055, 2.4);
+    case Kind::Curve:
+      break;
   }
   const auto above = std::lower_bound(curve_.begin() + 1, curve_.end() - 1, fraction,
                                       [](const Point& point, double value) { return point.fraction < value; });

@@ -10,10 +10,10 @@ namespace lumitexel {
 class CodeResponse {
  public:
   static CodeResponse linear();
-  static CodeResponse srgb();  // IEC 61966-2-1, eq. of the inverse transfer function
-  // A curve, linear between its points: lines "FRACTION,LINEAR", the code value as a fraction of the largest, from 0 to 1 and
-  // rising strictly, and the linear value, not negative, not falling, and rising over all. Lines that are blank or begin with #, and a first line
-  // "code,linear", are skipped. Throws BadInput naming `where`, line and field.
+  static CodeResponse srgb();  // IEC 61966-2-1, code to linear
+  // A curve, linear between its points: lines "FRACTION,LINEAR", the code value as a fraction of the largest, from 0 to
+  // 1 and rising strictly, and the linear value, not negative, not falling, and rising over all. Lines that are blank
+  // or begin with #, and a first line "code,linear", are skipped. Throws BadInput naming `where`, line and field.
   static CodeResponse from_csv(std::string_view text, const std::string& where);
 
   // fraction: code value / largest code value, in [0, 1].

@@ -93,7 +93,8 @@ PosedImage image_from(const TextLine& line) {
   for (std::size_t i = 0; i < 7; ++i) pose[i] = number_from(fields[1 + i], line.place, kNames[1 + i]);
   const Eigen::Quaterniond rotation(pose[0], pose[1], pose[2], pose[3]);
   if (std::abs(rotation.norm() - 1.0) > 0.01) {
-    throw BadInput(line.place + ": QW QX QY QZ", "a quaternion of length " + std::to_string(rotation.norm()), "length 1");
+    throw BadInput(line.place + ": QW QX QY QZ", "a quaternion of length " + std::to_string(rotation.norm()),
+                   "length 1");
   }
   count_from(fields[0], line.place, kNames[0]);
   PosedImage image;
@@ -104,7 +105,8 @@ PosedImage image_from(const TextLine& line) {
   return image;
 }
 
-// The points are not used, but reading them shows a file that leaves their lines out, and so would lose every other image.
+// The points are not used, but reading them shows a file that leaves their lines out, and so would lose every other
+// image.
 void check_points_line(const TextLine& line) {
   const std::vector<std::string_view> fields = split_at_spaces(line.text);
   if (fields.size() % 3 != 0 || is_comment(line.text)) {
@@ -120,7 +122,8 @@ std::map<std::int64_t, CameraModel> parse_cameras_txt(std::string_view text, con
   for (const TextLine& line : lines_of(text, where)) {
     const std::vector<std::string_view> fields = split_at_spaces(line.text);
     if (fields.empty() || is_comment(fields.front())) continue;
-    if (fields.size() < 4) throw BadInput(line.place, "a camera of few fields", "CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]");
+    if (fields.size() < 4)
+      throw BadInput(line.place, "a camera of few fields", "CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]");
     const std::int64_t id = count_from(fields[0], line.place, "CAMERA_ID");
     if (!cameras.emplace(id, camera_from(fields, line.place)).second) {
       throw BadInput(line.place + ": CAMERA_ID", std::to_string(id) + " stands twice", "each camera once");

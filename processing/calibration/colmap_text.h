@@ -2,7 +2,8 @@
 //
 //   cameras.txt   CAMERA_ID MODEL WIDTH HEIGHT PARAMS…
 //                 PINHOLE fx fy cx cy | OPENCV fx fy cx cy k1 k2 p1 p2 | SIMPLE_RADIAL f cx cy k
-//   images.txt    IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME, and a second line of 2-d points (X Y POINT3D_ID)…, often
+//   images.txt    IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME, and a second line of 2-d points (X Y POINT3D_ID)…,
+//   often
 //                 empty, which is not used. The quaternion and translation are camera_from_world; metres.
 //
 // Pixels as here: the centre of the top-left pixel is at (0.5, 0.5). Lines that begin with # are comments.
@@ -29,8 +30,8 @@ struct PosedImage {
 // By id. Throws BadInput naming `where`, line and field.
 std::map<std::int64_t, CameraModel> parse_cameras_txt(std::string_view text, const std::string& where);
 
-// In the file's order. Throws BadInput naming `where`, line and field for anything unreadable, a quaternion whose length is more than
-// 1 % off 1, a camera that is not in `cameras`, a name that stands twice, or a file without images.
+// In the file's order. Throws BadInput naming `where`, line and field for anything unreadable, a quaternion whose
+// length is more than 1 % off 1, a camera that is not in `cameras`, a name that stands twice, or a file without images.
 std::vector<PosedImage> parse_images_txt(std::string_view text, const std::string& where,
                                          const std::map<std::int64_t, CameraModel>& cameras);
 

@@ -13,9 +13,9 @@ struct NamedText {
   std::string where;  // the file, for errors
 };
 
-// A view for each image of images.txt, in its order, with three intensities and no photograph yet. Throws BadInput naming file, line and
-// field for what the parsers of colmap_text.h and lights_csv.h refuse, for an image without a light and a light without an
-// image, and if every view is held out.
+// A view for each image of images.txt, in its order, with three intensities and no photograph yet. Throws BadInput
+// naming file, line and field for what the parsers of colmap_text.h and lights_csv.h refuse, for an image without a
+// light and a light without an image, and if every view is held out.
 std::vector<View> join_views(const NamedText& cameras_txt, const NamedText& images_txt, const NamedText& lights_csv);
 
 // Leaves the light an intensity for each of 1 or 3 channels; a grayscale camera sees the mean of the three.

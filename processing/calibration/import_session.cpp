@@ -1,7 +1,5 @@
 #include "processing/calibration/import_session.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cctype>
 #include <nlohmann/json.hpp>
@@ -11,6 +9,7 @@
 #include "processing/calibration/import_layout.h"
 #include "processing/calibration/imported_photograph.h"
 #include "processing/surface/mesh_file.h"
+#include "rig/pending_directory.h"
 #include "rig/session_store.h"
 #include "rig/whole_file.h"
 
@@ -24,8 +23,8 @@ struct Checked {
   NamedText cameras_txt, images_txt, lights_csv, mesh, response_csv;
   std::string mesh_document, response;
   CodeResponse curve = CodeResponse::linear();
-  std::vector<View> views;       // photograph: the source
-  std::vector<fs::path> masks;   // one a view, or none at all
+  std::vector<View> views;      // photograph: the source
+  std::vector<fs::path> masks;  // one a view, or none at all
   int channels = 0;
 };
 
@@ -39,8 +38,8 @@ void read_mesh_source(const fs::path& path, Checked& checked) {
   const Mesh mesh = parse_mesh(checked.mesh.text, format, checked.mesh.where);
   for (const View& view : checked.views) {
     if (has_in_sight(view, mesh)) continue;
-    throw BadInput(checked.images_txt.where + ": " + view.name, "no vertex of " + checked.mesh.where + " is in its frame",
-                   "a pose from which the mesh is in sight");
+    throw BadInput(checked.images_txt.where + ": " + view.name,
+                   "no vertex of " + checked.mesh.where + " is in its frame", "a pose from which the mesh is in sight");
   }
 }
 
@@ -49,7 +48,8 @@ void choose_response(const std::string& response, Checked& checked) {
   const auto first = std::find_if(checked.views.begin(), checked.views.end(), exr);
   const auto other = std::find_if_not(checked.views.begin(), checked.views.end(), exr);
   if (first != checked.views.end() && other != checked.views.end()) {
-    throw BadInput(other->photograph.string(), "code values beside " + first->name + ", which is EXR", "one kind of photograph");
+    throw BadInput(other->photograph.string(), "code values beside " + first->name + ", which is EXR",
+                   "one kind of photograph");
   }
   checked.response = response.empty() || response == "linear" || response == "srgb" ? response : "response.csv";
   if (other == checked.views.end()) {
@@ -66,7 +66,8 @@ void choose_response(const std::string& response, Checked& checked) {
 }
 
 fs::path mask_of(const fs::path& directory, const std::string& image) {
-  const fs::path by_stem = directory / fs::path(image).replace_extension(".png"), by_name = directory / (image + ".png");
+  const fs::path by_stem = directory / fs::path(image).replace_extension(".png"),
+                 by_name = directory / (image + ".png");
   std::error_code ignored;
   return fs::exists(by_stem, ignored) || !fs::exists(by_name, ignored) ? by_stem : by_name;
 }
@@ -75,8 +76,10 @@ void check_photograph(const View& view, const fs::path* mask, Checked& checked) 
   RadianceImage photograph = read_photograph(view.photograph, checked.curve);
   const Image& radiance = photograph.radiance;
   if (radiance.width != view.camera.width_px || radiance.height != view.camera.height_px) {
-    throw BadInput(view.photograph.string(), "an image of " + std::to_string(radiance.width) + "x" + std::to_string(radiance.height),
-                   "its camera's " + std::to_string(view.camera.width_px) + "x" + std::to_string(view.camera.height_px));
+    throw BadInput(
+        view.photograph.string(),
+        "an image of " + std::to_string(radiance.width) + "x" + std::to_string(radiance.height),
+        "its camera's " + std::to_string(view.camera.width_px) + "x" + std::to_string(view.camera.height_px));
   }
   if (checked.channels == 0) checked.channels = radiance.channels;
   if (radiance.channels != checked.channels) {
@@ -111,7 +114,8 @@ Checked check_sources(const ImportSources& sources, Progress& progress, const st
   return checked;
 }
 
-// Frames lie in one folder, photographs of COLMAP may not. Results are named by the frame's stem, so that is what must be unique.
+// Frames lie in one folder, photographs of COLMAP may not. Results are named by the frame's stem, so that is what must
+// be unique.
 std::vector<std::string> frame_names(const Checked& checked) {
   std::vector<std::string> names;
   std::set<std::string> stems;
@@ -119,7 +123,8 @@ std::vector<std::string> frame_names(const Checked& checked) {
     std::string name = view.name;
     std::replace(name.begin(), name.end(), '/', '_');
     if (!stems.insert(fs::path(name).stem().string()).second) {
-      throw BadInput(checked.images_txt.where + ": NAME", view.name + " differs from another name only by folder or extension",
+      throw BadInput(checked.images_txt.where + ": NAME",
+                     view.name + " differs from another name only by folder or extension",
                      "names that stay apart as one file name each");
     }
     names.push_back(name);
@@ -127,7 +132,9 @@ std::vector<std::string> frame_names(const Checked& checked) {
   return names;
 }
 
-std::string mask_frame_name(const std::string& photograph) { return "mask_" + fs::path(photograph).stem().string() + ".png"; }
+std::string mask_frame_name(const std::string& photograph) {
+  return "mask_" + fs::path(photograph).stem().string() + ".png";
+}
 
 std::string import_json(const Checked& checked, const std::vector<std::string>& photographs) {
   nlohmann::ordered_json views = nlohmann::ordered_json::array();
@@ -169,53 +176,18 @@ void write_session(const fs::path& directory, const Checked& checked, const std:
   }
 }
 
-// A new folder beside the session's place; gone again, with the folders made to hold it, unless it became the session.
-class PendingDirectory {
- public:
-  explicit PendingDirectory(const fs::path& target) : target_(fs::absolute(target).lexically_normal()) {
-    if (target_.filename().empty()) target_ = target_.parent_path();  // "session/"
-    const fs::path parent = target_.parent_path();
-    for (fs::path at = parent; !fs::exists(at); at = at.parent_path()) made_parents_.push_back(at);
-    // No other living process has our number: what is there under that name was left by one that was killed.
-    path_ = parent / ("." + target_.filename().string() + ".partial-" + std::to_string(getpid()));
-    std::error_code failure;
-    fs::remove_all(path_, failure);
-    fs::create_directories(path_, failure);
-    if (failure) throw Error(path_.string() + ": cannot be made: " + failure.message());
-  }
-  ~PendingDirectory() {
-    if (in_place_) return;
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-    for (const fs::path& parent : made_parents_) fs::remove(parent, ignored);  // innermost first; only if empty
-  }
-  PendingDirectory(const PendingDirectory&) = delete;
-  PendingDirectory& operator=(const PendingDirectory&) = delete;
-
-  const fs::path& path() const { return path_; }
-  void move_into_place() {
-    std::error_code failure;
-    fs::rename(path_, target_, failure);
-    if (failure) throw Error(target_.string() + ": cannot be put in place: " + failure.message());
-    in_place_ = true;
-  }
-
- private:
-  fs::path target_, path_;
-  std::vector<fs::path> made_parents_;
-  bool in_place_ = false;
-};
-
 }  // namespace
 
-ImportSummary import_session(const ImportSources& sources, const fs::path& session, Progress& progress, std::stop_token stop) {
+ImportSummary import_session(const ImportSources& sources, const fs::path& session, Progress& progress,
+                             std::stop_token stop) {
   SessionStore::require_new_directory(session);
   const Checked checked = check_sources(sources, progress, stop);
   const std::vector<std::string> photographs = frame_names(checked);
   PendingDirectory pending(session);
   write_session(pending.path(), checked, photographs, progress, stop);
   pending.move_into_place();
-  const auto heldout = std::count_if(checked.views.begin(), checked.views.end(), [](const View& view) { return view.heldout; });
+  const auto heldout =
+      std::count_if(checked.views.begin(), checked.views.end(), [](const View& view) { return view.heldout; });
   return {static_cast<int>(checked.views.size()), static_cast<int>(heldout), checked.channels};
 }
 

@@ -24,7 +24,8 @@ RadianceImage unflagged(Image radiance) {
 RadianceImage through_response(const RasterImage& raster, const CodeResponse& response) {
   std::vector<float> radiance_of_code(static_cast<std::size_t>(raster.maximum) + 1);
   for (std::size_t code = 0; code < radiance_of_code.size(); ++code) {
-    radiance_of_code[code] = static_cast<float>(response.radiance(static_cast<double>(code) / static_cast<double>(raster.maximum)));
+    radiance_of_code[code] =
+        static_cast<float>(response.radiance(static_cast<double>(code) / static_cast<double>(raster.maximum)));
   }
   RadianceImage image = unflagged(raster.code_values);
   const auto channels = static_cast<std::size_t>(raster.code_values.channels);
@@ -37,9 +38,11 @@ RadianceImage through_response(const RasterImage& raster, const CodeResponse& re
 }
 
 void check_values(const std::string& where, const Image& image) {
-  const auto bad = std::find_if(image.data.begin(), image.data.end(), [](float value) { return !std::isfinite(value); });
+  const auto bad =
+      std::find_if(image.data.begin(), image.data.end(), [](float value) { return !std::isfinite(value); });
   if (bad != image.data.end()) {
-    const std::size_t pixel = static_cast<std::size_t>(bad - image.data.begin()) / static_cast<std::size_t>(image.channels);
+    const std::size_t pixel =
+        static_cast<std::size_t>(bad - image.data.begin()) / static_cast<std::size_t>(image.channels);
     const std::size_t width = static_cast<std::size_t>(image.width);
     throw BadInput(where + ": pixel (" + std::to_string(pixel % width) + ", " + std::to_string(pixel / width) + ")",
                    std::isnan(*bad) ? "NaN" : "an infinite value", "finite radiance");
@@ -53,7 +56,8 @@ void check_values(const std::string& where, const Image& image) {
 
 bool is_exr_name(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   return extension == ".exr";
 }
 
@@ -73,7 +77,8 @@ void apply_mask(const std::filesystem::path& mask, RadianceImage& photograph) {
   const Image& values = raster.code_values;
   if (raster.maximum != 255.0f) throw BadInput(mask.string(), "a mask of 16 bits", "8 bits, 255 where the object is");
   if (values.width != photograph.radiance.width || values.height != photograph.radiance.height) {
-    throw BadInput(mask.string(), "a mask of " + size_text(values), "the photograph's " + size_text(photograph.radiance));
+    throw BadInput(mask.string(), "a mask of " + size_text(values),
+                   "the photograph's " + size_text(photograph.radiance));
   }
   bool any_object = false;
   for (int y = 0; y < values.height; ++y) {

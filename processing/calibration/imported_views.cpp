@@ -56,7 +56,8 @@ CodeResponse response_of(const SessionStore& session, const std::string& name) {
   return CodeResponse::from_csv(csv.text, csv.where);
 }
 
-void make_photograph(const fs::path& source, const fs::path& mask, const CodeResponse& response, const fs::path& result) {
+void make_photograph(const fs::path& source, const fs::path& mask, const CodeResponse& response,
+                     const fs::path& result) {
   if (fs::exists(result)) return;  // put there whole, by renaming
   RadianceImage image = read_photograph(source, response);
   if (!mask.empty()) apply_mask(mask, image);
@@ -72,7 +73,8 @@ CalibratedSession calibrate_imported(const SessionStore& session, Progress& prog
   result.channels = record.channels;
   result.key = sha256_hex(session.content_sha256() + kStageVersion);
   result.mesh = parse_mesh(mesh.text, fs::path(record.mesh).extension().string(), mesh.where);
-  result.views = join_views(document(session, "cameras.txt"), document(session, "images.txt"), document(session, "lights.csv"));
+  result.views =
+      join_views(document(session, "cameras.txt"), document(session, "images.txt"), document(session, "lights.csv"));
 
   const fs::path directory = session.derived_directory() / "calibrated" / result.key;
   fs::create_directories(directory);
@@ -80,7 +82,8 @@ CalibratedSession calibrate_imported(const SessionStore& session, Progress& prog
   for (const FrameRecord& frame : session.frames()) frames[frame.name] = session.frame_path(frame);
   const auto frame = [&](const std::string& name) {
     const auto it = frames.find(name);
-    if (it == frames.end()) throw Corrupt(session.directory().string() + ": no frame " + name + ", which import.json names");
+    if (it == frames.end())
+      throw Corrupt(session.directory().string() + ": no frame " + name + ", which import.json names");
     return it->second;
   };
   const CodeResponse response = response_of(session, record.response);
@@ -90,10 +93,12 @@ CalibratedSession calibrate_imported(const SessionStore& session, Progress& prog
   tbb::parallel_for(std::size_t{0}, result.views.size(), [&](std::size_t i) {
     View& view = result.views[i];
     const auto files = record.files.find(view.name);
-    if (files == record.files.end()) throw Corrupt(session.directory().string() + ": import.json has no view " + view.name);
+    if (files == record.files.end())
+      throw Corrupt(session.directory().string() + ": import.json has no view " + view.name);
     const fs::path source = frame(files->second.photograph);
     view.photograph = directory / (source.stem().string() + ".exr");
-    make_photograph(source, files->second.mask.empty() ? fs::path() : frame(files->second.mask), response, view.photograph);
+    make_photograph(source, files->second.mask.empty() ? fs::path() : frame(files->second.mask), response,
+                    view.photograph);
     reduce_intensity(view.light, result.channels);
     progress.update(++done);
   });

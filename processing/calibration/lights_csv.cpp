@@ -28,7 +28,8 @@ Columns columns_from(const TextLine& header) {
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const std::string name(fields[i]);
     if (!known.contains(name)) unknown += (unknown.empty() ? "'" : ", '") + name + "'";
-    if (!columns.emplace(name, i).second) throw BadInput(header.place + ": " + name, "a column twice", "each column once");
+    if (!columns.emplace(name, i).second)
+      throw BadInput(header.place + ": " + name, "a column twice", "each column once");
   }
   if (!unknown.empty()) {
     throw BadInput(header.place, "unknown column " + unknown,
@@ -49,7 +50,8 @@ Light::Type type_from(std::string_view text, const std::string& place) {
 LightRow row_from(const TextLine& line, const Columns& columns) {
   const std::vector<std::string_view> fields = split_at(line.text, ',');
   if (fields.size() != columns.size()) {
-    throw BadInput(line.place, std::to_string(fields.size()) + " fields", std::to_string(columns.size()) + ", as in the header");
+    throw BadInput(line.place, std::to_string(fields.size()) + " fields",
+                   std::to_string(columns.size()) + ", as in the header");
   }
   const auto field = [&](const char* name) { return fields[columns.find(name)->second]; };
   const auto number = [&](const char* name) { return number_from(field(name), line.place, name); };

@@ -23,7 +23,8 @@ struct LightRow {
   std::string place;  // "FILE:LINE", for errors found later
 };
 
-// Throws BadInput naming `where`, line and column for unknown, repeated or missing columns, and for anything unreadable in a row.
+// Throws BadInput naming `where`, line and column for unknown, repeated or missing columns, and for anything unreadable
+// in a row.
 std::vector<LightRow> parse_lights_csv(std::string_view text, const std::string& where);
 
 }  // namespace lumitexel

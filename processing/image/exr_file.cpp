@@ -68,7 +68,8 @@ ExrImage read_planes(const std::string& where) {
     if (channel.xSampling != 1 || channel.ySampling != 1) {
       throw BadInput(where, std::string("channel ") + it.name() + " is subsampled", kExpectedExr);
     }
-    image.planes.push_back({it.name(), from_imf(channel.type), std::vector<float>(static_cast<std::size_t>(width * height))});
+    image.planes.push_back(
+        {it.name(), from_imf(channel.type), std::vector<float>(static_cast<std::size_t>(width * height))});
   }
   Imf::FrameBuffer buffer;
   for (ExrPlane& plane : image.planes) {
@@ -120,8 +121,8 @@ std::string encode(const ExrImage& image) {
   for (const ExrPlane& plane : image.planes) {
     header.channels().insert(plane.name, Imf::Channel(to_imf(plane.stored)));
     const StoredPlane& values = stored.emplace_back(plane);
-    buffer.insert(plane.name, Imf::Slice::Make(to_imf(plane.stored), values.data, header.dataWindow(),
-                                               values.pixel_bytes));
+    buffer.insert(plane.name,
+                  Imf::Slice::Make(to_imf(plane.stored), values.data, header.dataWindow(), values.pixel_bytes));
   }
   Imf::StdOSStream stream;
   {
@@ -133,7 +134,8 @@ std::string encode(const ExrImage& image) {
 }
 
 const ExrPlane* find_plane(const ExrImage& image, const std::string& name) {
-  const auto it = std::find_if(image.planes.begin(), image.planes.end(), [&](const ExrPlane& p) { return p.name == name; });
+  const auto it =
+      std::find_if(image.planes.begin(), image.planes.end(), [&](const ExrPlane& p) { return p.name == name; });
   return it == image.planes.end() ? nullptr : &*it;
 }
 

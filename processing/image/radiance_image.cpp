@@ -56,7 +56,8 @@ RadianceImage read_radiance_image(const std::filesystem::path& path) {
     throw Corrupt(error.what());  // it is ours, so no input of the user's
   }
   const std::string where = path.string();
-  const bool colour = std::any_of(planes.planes.begin(), planes.planes.end(), [](const ExrPlane& p) { return p.name == "R"; });
+  const bool colour =
+      std::any_of(planes.planes.begin(), planes.planes.end(), [](const ExrPlane& p) { return p.name == "R"; });
   RadianceImage image;
   image.radiance = gathered(planes, colour ? 3 : 1, "", where);
   image.variance = gathered(planes, colour ? 3 : 1, kVariancePrefix, where);

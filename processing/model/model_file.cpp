@@ -163,11 +163,16 @@ void read_basis(const fs::path& path, const ModelHeader& header, Model& model) {
 
 }  // namespace
 
-void write_model(const fs::path& directory, const Model& model) {
+void check_model_directory(const fs::path& directory) {
   const fs::path target = without_trailing_slash(directory);
   if (fs::exists(target) && !is_model(target) && !(fs::is_directory(target) && fs::is_empty(target))) {
     throw BadInput(directory.string(), "exists and is not a model", "a new folder or a model to replace");
   }
+}
+
+void write_model(const fs::path& directory, const Model& model) {
+  check_model_directory(directory);
+  const fs::path target = without_trailing_slash(directory);
   require_consistent(model);
   const fs::path fresh = sibling(target, ".writing");
   try {

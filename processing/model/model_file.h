@@ -8,6 +8,10 @@
 
 namespace lumitexel {
 
+// Throws BadInput if `directory` exists and is neither empty nor a model: what write_model would refuse, to be asked before
+// the long work.
+void check_model_directory(const std::filesystem::path& directory);
+
 // Writes a whole new directory beside `directory` and renames it into place; an existing model is replaced.
 // Throws BadInput if `directory` exists and is not a model, Error if it cannot be written.
 void write_model(const std::filesystem::path& directory, const Model& model);

@@ -69,7 +69,8 @@ struct EdgeTable {
 
   explicit EdgeTable(const ParsedMesh& parsed) : ends(parsed.mesh.triangles.size() * 3) {
     std::uint32_t positions = 0;
-    each_edge(parsed, [&](std::uint32_t, std::uint32_t high, std::uint32_t) { positions = std::max(positions, high + 1); });
+    each_edge(parsed,
+              [&](std::uint32_t, std::uint32_t high, std::uint32_t) { positions = std::max(positions, high + 1); });
     first.assign(std::size_t{positions} + 1, 0);
     each_edge(parsed, [&](std::uint32_t low, std::uint32_t, std::uint32_t) { ++first[low + 1]; });
     for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
@@ -93,14 +94,14 @@ void check_edges(const ParsedMesh& parsed, const std::string& where) {
   EdgeTable table(parsed);
   for (std::size_t low = 0; low + 1 < table.first.size(); ++low) {
     const auto begin = table.ends.begin() + table.first[low], end = table.ends.begin() + table.first[low + 1];
-    std::sort(begin, end, [](const EdgeEnd& a, const EdgeEnd& b) {
-      return a.to != b.to ? a.to < b.to : a.triangle < b.triangle;
-    });
+    std::sort(begin, end,
+              [](const EdgeEnd& a, const EdgeEnd& b) { return a.to != b.to ? a.to < b.to : a.triangle < b.triangle; });
     for (auto it = begin; end - it > 2; ++it) {
       if (it->to != (it + 2)->to) continue;
-      throw BadInput(place_of_triangle(parsed, where, (it + 2)->triangle),
-                     "a third triangle at the edge of vertices " + std::to_string(low) + " and " + std::to_string(it->to),
-                     "a manifold surface, at most two triangles at an edge");
+      throw BadInput(
+          place_of_triangle(parsed, where, (it + 2)->triangle),
+          "a third triangle at the edge of vertices " + std::to_string(low) + " and " + std::to_string(it->to),
+          "a manifold surface, at most two triangles at an edge");
     }
   }
 }

@@ -21,10 +21,11 @@ std::string ply_header(const Mesh& mesh) {
     for (const char* name : names) lines += std::string("property double ") + name + "\n";
     return lines;
   };
-  return "ply\nformat binary_little_endian 1.0\ncomment metres\nelement vertex " + std::to_string(mesh.positions.size()) +
-         "\n" + properties({"x", "y", "z"}) + (mesh.normals.empty() ? "" : properties({"nx", "ny", "nz"})) +
-         (mesh.texcoords.empty() ? "" : properties({"s", "t"})) + "element face " + std::to_string(mesh.triangles.size()) +
-         "\nproperty list uchar uint vertex_indices\nend_header\n";
+  return "ply\nformat binary_little_endian 1.0\ncomment metres\nelement vertex " +
+         std::to_string(mesh.positions.size()) + "\n" + properties({"x", "y", "z"}) +
+         (mesh.normals.empty() ? "" : properties({"nx", "ny", "nz"})) +
+         (mesh.texcoords.empty() ? "" : properties({"s", "t"})) + "element face " +
+         std::to_string(mesh.triangles.size()) + "\nproperty list uchar uint vertex_indices\nend_header\n";
 }
 
 template <typename T>

@@ -37,10 +37,12 @@ struct Header {
 
 std::optional<Scalar> scalar_from(const std::string& name) {
   static const std::pair<const char*, Scalar> kNames[] = {
-      {"char", Scalar::Int8},     {"int8", Scalar::Int8},       {"uchar", Scalar::Uint8},    {"uint8", Scalar::Uint8},
-      {"short", Scalar::Int16},   {"int16", Scalar::Int16},     {"ushort", Scalar::Uint16},  {"uint16", Scalar::Uint16},
-      {"int", Scalar::Int32},     {"int32", Scalar::Int32},     {"uint", Scalar::Uint32},    {"uint32", Scalar::Uint32},
-      {"float", Scalar::Float32}, {"float32", Scalar::Float32}, {"double", Scalar::Float64}, {"float64", Scalar::Float64}};
+      {"char", Scalar::Int8},      {"int8", Scalar::Int8},       {"uchar", Scalar::Uint8},
+      {"uint8", Scalar::Uint8},    {"short", Scalar::Int16},     {"int16", Scalar::Int16},
+      {"ushort", Scalar::Uint16},  {"uint16", Scalar::Uint16},   {"int", Scalar::Int32},
+      {"int32", Scalar::Int32},    {"uint", Scalar::Uint32},     {"uint32", Scalar::Uint32},
+      {"float", Scalar::Float32},  {"float32", Scalar::Float32}, {"double", Scalar::Float64},
+      {"float64", Scalar::Float64}};
   for (const auto& [known, type] : kNames) {
     if (name == known) return type;
   }
@@ -110,8 +112,11 @@ double load(const char* from) {
 class Body {
  public:
   Body(std::string_view bytes, const Header& header, const std::string& where)
-      : at_(bytes.data() + header.bytes), end_(bytes.data() + bytes.size()), binary_(header.binary),
-        line_(header.lines + 1), where_(where) {}
+      : at_(bytes.data() + header.bytes),
+        end_(bytes.data() + bytes.size()),
+        binary_(header.binary),
+        line_(header.lines + 1),
+        where_(where) {}
 
   void enter(const Element& element, std::size_t index) { element_ = &element, index_ = index; }
   double next(Scalar type) { return binary_ ? next_binary(type) : next_text(); }
@@ -150,14 +155,22 @@ class Body {
     const char* from = at_;
     at_ += size;
     switch (type) {
-      case Scalar::Int8: return load<std::int8_t>(from);
-      case Scalar::Uint8: return load<std::uint8_t>(from);
-      case Scalar::Int16: return load<std::int16_t>(from);
-      case Scalar::Uint16: return load<std::uint16_t>(from);
-      case Scalar::Int32: return load<std::int32_t>(from);
-      case Scalar::Uint32: return load<std::uint32_t>(from);
-      case Scalar::Float32: return load<float>(from);
-      case Scalar::Float64: return load<double>(from);
+      case Scalar::Int8:
+        return load<std::int8_t>(from);
+      case Scalar::Uint8:
+        return load<std::uint8_t>(from);
+      case Scalar::Int16:
+        return load<std::int16_t>(from);
+      case Scalar::Uint16:
+        return load<std::uint16_t>(from);
+      case Scalar::Int32:
+        return load<std::int32_t>(from);
+      case Scalar::Uint32:
+        return load<std::uint32_t>(from);
+      case Scalar::Float32:
+        return load<float>(from);
+      case Scalar::Float64:
+        return load<double>(from);
     }
     return 0;
   }
@@ -264,7 +277,8 @@ ParsedMesh parse_ply(std::string_view bytes, const std::string& where) {
   for (const Element& element : header.elements) {
     // Every value takes a byte at least; asked first, so that a damaged count does not allocate what it claims.
     if (element.count > body.bytes_left()) {
-      throw BadInput(where + ": element " + element.name, "the file ends early", std::to_string(element.count) + " of them");
+      throw BadInput(where + ": element " + element.name, "the file ends early",
+                     std::to_string(element.count) + " of them");
     }
     if (element.name == "vertex") {
       read_vertices(body, element, !header.binary, parsed, where);

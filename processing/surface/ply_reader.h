@@ -1,5 +1,5 @@
-// PLY, ascii and binary little endian: elements "vertex" (x, y, z; nx, ny, nz; s, t or u, v) and "face" (the list vertex_indices
-// or vertex_index). Other elements and properties are skipped.
+// PLY, ascii and binary little endian: elements "vertex" (x, y, z; nx, ny, nz; s, t or u, v) and "face" (the list
+// vertex_indices or vertex_index). Other elements and properties are skipped.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace lumitexel {
 
-// Throws BadInput naming `where` and the header's line, or the element, for anything that cannot be read. Only the form is
-// checked here: see check_mesh for the rest.
+// Throws BadInput naming `where` and the header's line, or the element, for anything that cannot be read. Only the form
+// is checked here: see check_mesh for the rest.
 ParsedMesh parse_ply(std::string_view bytes, const std::string& where);
 
 }  // namespace lumitexel

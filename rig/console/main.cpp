@@ -20,6 +20,7 @@ const std::vector<void (*)(CLI::App&, CommandAction&)> kCommands = {
     add_verify_command,
     add_import_command,
     add_calibrate_command,
+    add_fit_command,
     add_render_command,
     add_evaluate_command,
     add_report_command,

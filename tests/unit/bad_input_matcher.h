@@ -19,7 +19,8 @@ inline testing::AssertionResult throws_bad_input(const std::function<void()>& ac
     const std::string message = error.what();
     if (message.find('\n') != std::string::npos) return testing::AssertionFailure() << "more than a line: " << message;
     for (const std::string& part : parts) {
-      if (message.find(part) == std::string::npos) return testing::AssertionFailure() << "no '" << part << "' in: " << message;
+      if (message.find(part) == std::string::npos)
+        return testing::AssertionFailure() << "no '" << part << "' in: " << message;
     }
     return testing::AssertionSuccess();
   } catch (const std::exception& error) {

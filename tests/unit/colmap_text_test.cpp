@@ -69,9 +69,7 @@ TEST(ImagesTxt, PosesAreCameraFromWorldWithTheQuaternionsRealPartFirst) {
   EXPECT_LT((turned - Eigen::Vector3d(1, 3, 3)).norm(), 1e-12);
 }
 
-TEST(ImagesTxt, TheLastPointsLineMayBeMissing) {
-  EXPECT_EQ(parse_images("1 1 0 0 0 0 0 0 1 a.exr").size(), 1u);
-}
+TEST(ImagesTxt, TheLastPointsLineMayBeMissing) { EXPECT_EQ(parse_images("1 1 0 0 0 0 0 0 1 a.exr").size(), 1u); }
 
 TEST(ImagesTxt, BadFieldsAreNamed) {
   EXPECT_BAD_INPUT(parse_images(""), "images.txt", "no image");

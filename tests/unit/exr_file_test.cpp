@@ -27,7 +27,8 @@ const ExrPlane& plane(const ExrImage& image, const std::string& name) {
 
 TEST(ExrFile, PlanesComeBackInTheirOwnTypes) {
   const TemporaryFolder folder;
-  const ExrImage written{3, 2,
+  const ExrImage written{3,
+                         2,
                          {{"weight3", ExrPixel::Float, {0.1f, 1e-30f, 3e38f, -2.5f, 0.0f, 7.0f}},
                           {"normal.X", ExrPixel::Half, {0.5f, -1.0f, 65504.0f, 0.25f, 2048.0f, 1.0f / 3.0f}},
                           {"flags", ExrPixel::Uint, {0.0f, 1.0f, 255.0f, 16777215.0f, 8.0f, 2.0f}}}};
@@ -97,7 +98,8 @@ TEST(ExrFile, WhatIsNoWholeExrIsNamed) {
   write_exr_colour(folder / "whole.exr", noise);
   const std::string bytes = read_whole_file(folder / "whole.exr");
   for (const double part : {0.01, 0.1, 0.5, 0.99}) {
-    write_whole_file(folder / "cut.exr", bytes.substr(0, static_cast<std::size_t>(static_cast<double>(bytes.size()) * part)));
+    write_whole_file(folder / "cut.exr",
+                     bytes.substr(0, static_cast<std::size_t>(static_cast<double>(bytes.size()) * part)));
     EXPECT_BAD_INPUT(read_exr(folder / "cut.exr"), "cut.exr");
   }
 }

@@ -158,7 +158,8 @@ const BadCase kBadCases[] = {
     {"MissingPhotograph", [](auto& l, auto&) { l.remove("images/b.exr"); }, {"images/b.exr", "no such file"}},
     {"MissingMask", [](auto& l, auto&) { l.remove("masks/b.png"); }, {"masks/b.png", "no such file"}},
 
-    {"MeshNonManifold", [](auto& l, auto&) { l.replace("mesh.obj", "f 1 3 2", "v 1 1 1\nf 1 3 2\nf 1 2 5"); },
+    {"MeshNonManifold",
+     [](auto& l, auto&) { l.replace("mesh.obj", "f 1 3 2", "v 1 1 1\nf 1 3 2\nf 1 2 5"); },
      {"mesh.obj:8", "manifold"}},
     {"MeshZeroArea", [](auto& l, auto&) { l.replace("mesh.obj", "f 1 2 4", "f 1 2 2"); }, {"mesh.obj:6", "zero area"}},
     {"MeshNan", [](auto& l, auto&) { l.replace("mesh.obj", "v 0 0.3 0", "v 0 nan 0"); }, {"mesh.obj:3", "nan"}},
@@ -177,11 +178,14 @@ const BadCase kBadCases[] = {
      [](auto& l, auto&) { l.put("images/b.exr", read_whole_file(l.path("images/b.exr")).substr(0, 400)); },
      {"images/b.exr"}},
     {"PhotographWithNan", [](auto& l, auto&) { spoil_pixel(l, std::nanf("")); }, {"images/b.exr", "(7, 5)", "NaN"}},
-    {"PhotographWithInfinity", [](auto& l, auto&) { spoil_pixel(l, std::numeric_limits<float>::infinity()); },
+    {"PhotographWithInfinity",
+     [](auto& l, auto&) { spoil_pixel(l, std::numeric_limits<float>::infinity()); },
      {"images/b.exr", "(7, 5)", "infinite"}},
-    {"PhotographAllBlack", [](auto& l, auto&) { write_exr_colour(l.path("images/b.exr"), Image(16, 12, 3)); },
+    {"PhotographAllBlack",
+     [](auto& l, auto&) { write_exr_colour(l.path("images/b.exr"), Image(16, 12, 3)); },
      {"images/b.exr", "black"}},
-    {"PhotographGrayAmongColour", [](auto& l, auto&) { write_exr_colour(l.path("images/b.exr"), Image(16, 12, 1, 1.0f)); },
+    {"PhotographGrayAmongColour",
+     [](auto& l, auto&) { write_exr_colour(l.path("images/b.exr"), Image(16, 12, 1, 1.0f)); },
      {"images/b.exr", "1 channels"}},
     {"PhotographPngTruncated",
      [](auto& l, auto& s) {
@@ -197,15 +201,21 @@ const BadCase kBadCases[] = {
      },
      {"images/a.png", "black"}},
 
-    {"LightMissing", [](auto& l, auto&) { l.replace("lights.csv", "b.exr,directional,0,0,-1,1,2,3,fit\n", ""); },
+    {"LightMissing",
+     [](auto& l, auto&) { l.replace("lights.csv", "b.exr,directional,0,0,-1,1,2,3,fit\n", ""); },
      {"lights.csv", "image", "b.exr"}},
-    {"LightMalformedNumber", [](auto& l, auto&) { l.replace("lights.csv", "1,0,-2,10", "1,0,-2..0,10"); },
+    {"LightMalformedNumber",
+     [](auto& l, auto&) { l.replace("lights.csv", "1,0,-2,10", "1,0,-2..0,10"); },
      {"lights.csv:2: z", "-2..0"}},
-    {"LightUnknownColumn", [](auto& l, auto&) { l.replace("lights.csv", "split", "spilt"); }, {"lights.csv:1", "'spilt'"}},
-    {"LightUnknownType", [](auto& l, auto&) { l.replace("lights.csv", "directional", "area"); },
+    {"LightUnknownColumn",
+     [](auto& l, auto&) { l.replace("lights.csv", "split", "spilt"); },
+     {"lights.csv:1", "'spilt'"}},
+    {"LightUnknownType",
+     [](auto& l, auto&) { l.replace("lights.csv", "directional", "area"); },
      {"lights.csv:3: type", "area"}},
     {"LightWithoutImage", [](auto& l, auto&) { l.replace("lights.csv", "c.exr", "d.exr"); }, {"lights.csv", "c.exr"}},
-    {"LightForNoImage", [](auto& l, auto&) { l.replace("images.txt", "3 1 0 0 0 -0.1 0 2 1 c.exr\n\n", ""); },
+    {"LightForNoImage",
+     [](auto& l, auto&) { l.replace("images.txt", "3 1 0 0 0 -0.1 0 2 1 c.exr\n\n", ""); },
      {"lights.csv:4: image", "c.exr"}},
     {"EveryImageHeldOut",
      [](auto& l, auto&) {
@@ -214,19 +224,25 @@ const BadCase kBadCases[] = {
      },
      {"lights.csv: split"}},
 
-    {"MeshBehindTheCamera", [](auto& l, auto&) { l.replace("images.txt", "0.1 0 2", "0.1 0 -2"); },
+    {"MeshBehindTheCamera",
+     [](auto& l, auto&) { l.replace("images.txt", "0.1 0 2", "0.1 0 -2"); },
      {"images.txt", "b.exr", "mesh.obj"}},
-    {"MeshBesideTheFrame", [](auto& l, auto&) { l.replace("images.txt", "0.1 0 2", "5 0 2"); },
+    {"MeshBesideTheFrame",
+     [](auto& l, auto&) { l.replace("images.txt", "0.1 0 2", "5 0 2"); },
      {"images.txt", "b.exr", "mesh.obj"}},
-    {"CameraUnknown", [](auto& l, auto&) { l.replace("images.txt", "2 1 b.exr", "2 9 b.exr"); },
+    {"CameraUnknown",
+     [](auto& l, auto&) { l.replace("images.txt", "2 1 b.exr", "2 9 b.exr"); },
      {"images.txt:3: CAMERA_ID", "9"}},
 
-    {"MaskOfWrongSize", [](auto& l, auto&) { write_png8(l.path("masks/b.png"), Image(16, 11, 1, 1.0f)); },
+    {"MaskOfWrongSize",
+     [](auto& l, auto&) { write_png8(l.path("masks/b.png"), Image(16, 11, 1, 1.0f)); },
      {"masks/b.png", "16x11", "16x12"}},
     {"MaskEmpty", [](auto& l, auto&) { write_png8(l.path("masks/b.png"), Image(16, 12, 1)); }, {"masks/b.png", "255"}},
     {"MaskNoImage", [](auto& l, auto&) { l.put("masks/b.png", "hello"); }, {"masks/b.png", "PNG"}},
 
-    {"ResponseMissingForCodeValues", [](auto& l, auto&) { l.use_png(Image(16, 12, 3, 0.5f)); }, {"--response", "a.png"}},
+    {"ResponseMissingForCodeValues",
+     [](auto& l, auto&) { l.use_png(Image(16, 12, 3, 0.5f)); },
+     {"--response", "a.png"}},
     {"ResponseForRadiance", [](auto&, auto& s) { s.response = "srgb"; }, {"--response", "srgb", "EXR"}},
     {"ResponseFileMissing",
      [](auto& l, auto& s) {
@@ -299,9 +315,8 @@ std::string lines_of_images(const std::filesystem::path& path, const std::vector
   std::istringstream all(read_whole_file(path));
   std::string kept;
   for (std::string line; std::getline(all, line);) {
-    const bool of_image = std::any_of(images.begin(), images.end(), [&](const std::string& image) {
-      return line.find(image) != std::string::npos;
-    });
+    const bool of_image = std::any_of(images.begin(), images.end(),
+                                      [&](const std::string& image) { return line.find(image) != std::string::npos; });
     if (of_image || line.rfind("image,", 0) == 0) kept += line + "\n" + (path.extension() == ".txt" ? "\n" : "");
   }
   return kept;
@@ -317,7 +332,8 @@ TEST(ImportSession, ReadsPhotographsOfAnUnrelatedRenderer) {
   write_whole_file(folder / "lights.csv", lines_of_images(oracle / "lights.csv", images));
   NoProgress progress;
   const ImportSummary summary = import_session(
-      {folder.path(), oracle / "images", folder / "lights.csv", oracle / "mesh.ply", oracle / "masks", ""}, folder / "s", progress);
+      {folder.path(), oracle / "images", folder / "lights.csv", oracle / "mesh.ply", oracle / "masks", ""},
+      folder / "s", progress);
   EXPECT_EQ(summary.views, 3);
   EXPECT_EQ(summary.heldout, 1);
   const CalibratedSession session = calibrate_imported(SessionStore::open(folder / "s", OpenMode::ReadOnly), progress);
@@ -328,7 +344,8 @@ TEST(ImportSession, ReadsPhotographsOfAnUnrelatedRenderer) {
     int on_object = 0;
     for (const Eigen::Vector3d& position : session.mesh.positions) {
       const Eigen::Vector2d pixel = view.camera.project(view.camera_from_world * position);
-      on_object += view.camera.contains(pixel) && image.flag(static_cast<int>(pixel.x()), static_cast<int>(pixel.y())) == 0;
+      on_object +=
+          view.camera.contains(pixel) && image.flag(static_cast<int>(pixel.x()), static_cast<int>(pixel.y())) == 0;
     }
     EXPECT_GT(on_object, 0.98 * static_cast<double>(session.mesh.positions.size())) << view.name;
     EXPECT_EQ(image.flag(0, 0), kPixelOutside) << view.name;

@@ -13,7 +13,8 @@ std::vector<LightRow> parse(const std::string& text) { return parse_lights_csv(t
 std::vector<LightRow> parse_row(const std::string& row) { return parse(kHeader + "\n" + row + "\n"); }
 
 TEST(LightsCsv, BothTypesAreRead) {
-  const auto rows = parse(kHeader + "\r\na.exr,point,1,-2,3e0,10,11,12\r\n\r\n# note\r\nb.exr, directional, 0,0.6,0.8, 1,1,2\r\n");
+  const auto rows =
+      parse(kHeader + "\r\na.exr,point,1,-2,3e0,10,11,12\r\n\r\n# note\r\nb.exr, directional, 0,0.6,0.8, 1,1,2\r\n");
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[0].image, "a.exr");
   EXPECT_EQ(rows[0].light.type, Light::Type::Point);
@@ -25,8 +26,9 @@ TEST(LightsCsv, BothTypesAreRead) {
 }
 
 TEST(LightsCsv, ColumnsMayStandInAnyOrderAndSplitIsRead) {
-  const auto rows = parse("split,image,x,y,z,type,intensity_b,intensity_g,intensity_r\nheldout,a,1,2,3,point,4,5,6\n"
-                          "fit,b,1,2,3,point,4,5,6\n");
+  const auto rows = parse(
+      "split,image,x,y,z,type,intensity_b,intensity_g,intensity_r\nheldout,a,1,2,3,point,4,5,6\n"
+      "fit,b,1,2,3,point,4,5,6\n");
   EXPECT_TRUE(rows[0].heldout);
   EXPECT_FALSE(rows[1].heldout);
   EXPECT_EQ(rows[0].light.intensity, (std::vector<double>{6, 5, 4}));

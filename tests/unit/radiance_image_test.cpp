@@ -10,7 +10,8 @@ namespace lumitexel {
 namespace {
 
 RadianceImage sample(int channels) {
-  RadianceImage image{Image(2, 2, channels), Image(2, 2, channels), {0, kPixelSaturated, kPixelOutside | kPixelDark, 255}};
+  RadianceImage image{
+      Image(2, 2, channels), Image(2, 2, channels), {0, kPixelSaturated, kPixelOutside | kPixelDark, 255}};
   for (std::size_t i = 0; i < image.radiance.data.size(); ++i) {
     image.radiance.data[i] = 0.1f * static_cast<float>(i);
     image.variance.data[i] = 1e-7f * static_cast<float>(i + 1);

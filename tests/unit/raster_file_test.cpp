@@ -58,10 +58,12 @@ TEST(RasterFile, WhatIsNoWholeRasterIsNamed) {
   std::ofstream(folder / "text.png") << "no image";
   EXPECT_BAD_INPUT(read_raster(folder / "text.png"), "text.png", "neither PNG nor TIFF");
   Image image(64, 64, 1);
-  for (std::size_t i = 0; i < image.data.size(); ++i) image.data[i] = static_cast<float>(i * 2654435761u % 256u) / 255.0f;
+  for (std::size_t i = 0; i < image.data.size(); ++i)
+    image.data[i] = static_cast<float>(i * 2654435761u % 256u) / 255.0f;
   const std::string png = encode_png8(image);
   for (const double part : {0.2, 0.6, 0.95}) {
-    write_whole_file(folder / "cut.png", png.substr(0, static_cast<std::size_t>(static_cast<double>(png.size()) * part)));
+    write_whole_file(folder / "cut.png",
+                     png.substr(0, static_cast<std::size_t>(static_cast<double>(png.size()) * part)));
     EXPECT_BAD_INPUT(read_raster(folder / "cut.png"), "cut.png", "ends early");
   }
 }

@@ -14,8 +14,9 @@ inline std::filesystem::path shared_data() {
                           : std::filesystem::path(LUMITEXEL_SOURCE_DIR).parent_path() / "shared" / "data";
 }
 
-#define SKIP_WITHOUT_SHARED_DATA(name)                                                              \
-  if (!std::filesystem::exists(lumitexel::shared_data() / (name)))                                  \
-  GTEST_SKIP() << "SHARED DATA MISSING: " << (lumitexel::shared_data() / (name)).string() << " is not there, so this is not tested"
+#define SKIP_WITHOUT_SHARED_DATA(name)                                                    \
+  if (!std::filesystem::exists(lumitexel::shared_data() / (name)))                        \
+  GTEST_SKIP() << "SHARED DATA MISSING: " << (lumitexel::shared_data() / (name)).string() \
+               << " is not there, so this is not tested"
 
 }  // namespace lumitexel

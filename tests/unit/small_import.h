@@ -11,8 +11,8 @@
 
 namespace lumitexel {
 
-// Three photographs a.exr, b.exr, c.exr (held out) of 16x12 pixels, red 1, green 2, blue 3 + 0.01 x, of a tetrahedron 2 m ahead,
-// and masks whose left column is off the object.
+// Three photographs a.exr, b.exr, c.exr (held out) of 16x12 pixels, red 1, green 2, blue 3 + 0.01 x, of a tetrahedron 2
+// m ahead, and masks whose left column is off the object.
 class SmallImport {
  public:
   static constexpr int kWidth = 16, kHeight = 12;
