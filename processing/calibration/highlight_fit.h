@@ -2,8 +2,8 @@
 //
 // A highlight on a sphere is a few pixels wide, and a mosaic samples it at a quarter (red, blue) or half (green) of
 // them, so a centroid would follow the mosaic. Instead a peak of elliptical shape, averaged over each pixel's area,
-//   balance[c] * (background + amplitude * w(p) / (1 + |L t(p)|^2)^2)
-// (the profile of a slightly rough mirror; L lower triangular), is fitted by weighted least squares. Saturated and
+//   balance[c] * (background + amplitude * w(p) * (1 + |L t(p)|^2 / b)^-b)
+// (from b = 2, a rough GGX mirror's, to b = 16, nearly a Gaussian; b is fitted too; L lower triangular), is fitted by weighted least squares. Saturated and
 // defective pixels are left out, so a clipped core is found by its flanks.
 //
 // In the picture's plane t(p) = p - centre and w = 1. On a known sphere the peak is symmetric about the normal n0 that

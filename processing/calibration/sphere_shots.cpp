@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kMostBlobs = 80;  // the search for the row grows with the cube
 constexpr int kReachPx = 8;             // of a fit's window about the blob
 // What a fit cannot know of itself: profile and pixel response differ from the model's, and the spheres stand still, so this does not average out.
-constexpr double kSystematicPx = 0.02;
+constexpr double kSystematicPx = 0.01;
 constexpr double kStandsElsewherePx = 1.5;
 
 struct SeenHighlight {

@@ -50,7 +50,7 @@ double rms_error_px(Mosaic mosaic, const std::optional<ColourBalance>& balance, 
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> within(0.0, 2.0);
   double sum = 0.0;
-  constexpr int kTrials = 60;
+  constexpr int kTrials = 30;
   for (int i = 0; i < kTrials; ++i) {
     const Eigen::Vector2d truth(20.0 + within(random), 20.0 + within(random));
     const MosaicRadiance image = picture(mosaic, {{truth, 8000.0, width_px}}, static_cast<std::uint64_t>(i), 40, 40);
@@ -145,8 +145,8 @@ TEST(HighlightFit, OnAKnownSphereFollowsTheMirrorPoint) {
   const auto plain = fit_highlight(image, truth, 8, std::nullopt);
   const auto on_sphere = fit_highlight(image, truth, 8, std::nullopt, SphereInView{seen_by, sphere});
   ASSERT_TRUE(plain && on_sphere);
-  EXPECT_GT((plain->pixel - truth).norm(), 0.012);  // the inward pull that the picture's plane cannot know
-  EXPECT_LT((on_sphere->pixel - truth).norm(), 0.004);
+  EXPECT_GT((plain->pixel - truth).norm(), 0.004);  // the inward pull that the picture's plane cannot know
+  EXPECT_LT((on_sphere->pixel - truth).norm(), 0.002);
 }
 
 std::vector<Spot> row_and_sparkles(std::uint64_t seed) {
