@@ -27,10 +27,10 @@ RigDevices make_simulated_devices(const RigDescription& rig, std::shared_ptr<Sim
 // What a scanner would deliver of the world's object: smoothed, decimated, in the table's frame.
 Mesh scanned_mesh(const SimulatedWorld& world);
 
-// The truth that tests and `evaluate` read, under SESSION/truth/: calibration.json (as `calibrate --json` prints it, and
-// the lights' intensities; scale.value is radiance per electron/s), mesh.ply (the true surface), and per view, at pixel
-// centres, NAME_normal.exr (unit normals in the table's frame) and NAME_material.exr (1 for the first of
-// simulation.materials; 0 outside the object). Throws Error if it cannot be written.
+// The truth that tests and `evaluate` read, under SESSION/truth/: calibration.json as `calibrate --json` prints it, with
+// the lights' intensities added (intensity_w_per_sr; scale.value has them in samples/s, the unit of the photographs);
+// mesh.ply, the true surface; and per view, at pixel centres, NAME_normal.exr (unit normals in the table's frame) and
+// NAME_material.exr (1 for the first of simulation.materials; 0 outside the object). Throws Error if it cannot be written.
 void write_truth(const SimulatedWorld& world, const RigDescription& rig, const CapturePlan& plan,
                  const std::filesystem::path& truth_directory);
 

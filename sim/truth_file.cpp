@@ -15,6 +15,16 @@ namespace {
 
 using nlohmann::json;
 
+// The point light's intensity per channel in the unit of the photographs (samples per second at 0 dB): what a perfect
+// calibration would find from the gray card.
+std::vector<double> light_in_photographs(const SimulatedWorld& world) {
+  const double dn_per_s_per_radiance =
+      world.settings.response_e_per_s_per_radiance / world.rig.camera.sensor.electrons_per_dn;
+  const Eigen::Array3d intensity = dn_per_s_per_radiance * world.settings.point_light_w_per_sr;
+  if (world.rig.camera.limits.mosaic == Mosaic::Mono) return {intensity.mean()};
+  return {intensity[0], intensity[1], intensity[2]};
+}
+
 json true_calibration(const SimulatedWorld& world, const CapturePlan& plan) {
   json lights = json::array(), poses = json::array();
   for (const PlannedView& view : plan.views) {
@@ -41,8 +51,7 @@ json true_calibration(const SimulatedWorld& world, const CapturePlan& plan) {
   return {{"lights", lights},
           {"poses", poses},
           {"camera", {{"model", "OPENCV"}, {"params", params}, {"reprojection_px", 0.0}}},
-          // Radiance of one electron a second: what a perfect calibration would find from the gray card.
-          {"scale", {{"value", 1.0 / world.settings.response_e_per_s_per_radiance}, {"sigma", 0.0}}}};
+          {"scale", {{"value", light_in_photographs(world)}, {"sigma", 0.0}}}};
 }
 
 // Normal and material (1 for the first; 0: not the object) at every pixel's centre.

@@ -2,6 +2,7 @@
 
 #include <oneapi/tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -15,6 +16,7 @@ constexpr int kSplitRounds = 6;
 constexpr int kGlobalRounds = 12;
 constexpr double kSettled = 0.002;           // share of labels that may still move when reclustering ends
 constexpr std::size_t kFewestMembers = 20;   // a material needs as many lumitexels
+constexpr std::size_t kWorstShare = 8;       // one in so many, the worst explained, may begin a material of their own
 
 using Members = std::vector<std::size_t>;
 
@@ -70,6 +72,20 @@ class Clusterer {
     return std::accumulate(cost.begin(), cost.end(), 0.0);
   }
 
+  // cost: of each member under the material as it is.
+  LafortuneBrdf fit_of_worst(const Members& members, const std::vector<double>& cost) const {
+    std::vector<std::pair<double, std::size_t>> ranked;
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      const double samples = std::max<double>(1.0, static_cast<double>(observations_.of(members[k]).size()));
+      ranked.emplace_back(-cost[k] / samples, members[k]);
+    }
+    std::sort(ranked.begin(), ranked.end());
+    ranked.resize(std::max(kFewestMembers, ranked.size() / kWorstShare));
+    Members worst;
+    for (const auto& [negative_cost, lumitexel] : ranked) worst.push_back(lumitexel);
+    return fit(worst, nullptr).brdf;
+  }
+
   Split best_split(const Material& material, const Members& members) const {
     Split best;
     if (members.size() < 2 * kFewestMembers) return best;
@@ -78,7 +94,8 @@ class Clusterer {
     assign({material.brdf}, members, label, cost);
     const double whole = std::accumulate(cost.begin(), cost.end(), 0.0);
     for (const BrdfPair& pair : {split_along_covariance(material, options_.fit.shared_shape),
-                                 split_along_brightness(material, observations_, members, options_.fit.error)}) {
+                                 split_along_brightness(material, observations_, members, options_.fit.error),
+                                 BrdfPair{material.brdf, fit_of_worst(members, cost)}}) {
       std::vector<Material> halves{{pair.first, {}, 0}, {pair.second, {}, 0}};
       int rounds = 0;
       const double parted = recluster(halves, members, label, kSplitRounds, rounds);
@@ -192,7 +209,7 @@ double misfit(const LafortuneBrdf& brdf, int channels, std::span<const Observati
       squares += residual * residual / variance;
       sum += std::log(variance);
     }
-    sum += std::min(squares, kMostPerSample * channels);
+    sum += (kFreedom + channels) * std::log1p(squares / kFreedom);
   }
   return sum;
 }

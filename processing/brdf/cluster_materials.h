@@ -28,15 +28,16 @@ struct Clustering {
   int recluster_rounds = 0;
 };
 
-// How badly a BRDF explains a lumitexel: minus twice the log likelihood under the error model, up to a constant. A single
-// sample counts at most kMostPerSample squared deviations, so that one missed shadow does not decide.
-inline constexpr double kMostPerSample = 16.0;
+// How badly a BRDF explains a lumitexel: minus twice the log likelihood, up to a constant, of Student's t with
+// kFreedom degrees of freedom a sample and the error model's variance. Its tails are heavy, so one missed shadow does not
+// decide, yet never flat, so that even a lumitexel that no material explains still knows which one is nearer.
+inline constexpr double kFreedom = 4.0;
 double misfit(const LafortuneBrdf& brdf, int channels, std::span<const Observation> samples, const ErrorModel& error);
 
 // Learns on `selection` (lumitexel indices), then labels all lumitexels and refits on many of each material's. Splits the material
-// whose split gains most likelihood, along the first eigenvector of its fit's covariance (eq. 9) or along the direction
-// in which its lumitexels' brightness and colour vary most, whichever gains more; reclusters both halves, then all materials (eq. 10), until no
-// label moves any more. report(k) is called with the number of materials so far.
+// whose split gains most likelihood: along the first eigenvector of its fit's covariance (eq. 9), along the direction in
+// which its lumitexels' brightness and colour vary most, or by parting from those that it explains worst, whichever gains
+// most. Reclusters both halves, then all materials (eq. 10), until hardly a label moves any more. report(k) is called with the number of materials so far.
 Clustering cluster_materials(const Observations& observations, const std::vector<std::size_t>& selection,
                              const ClusterOptions& options, const std::function<void(int)>& report);
 

@@ -133,8 +133,8 @@ struct Candidates {
 
 // What leaving samples out costs with one candidate.
 struct LeftOut {
-  double capped = 0;  // weighted squared deviations, each sample's capped
-  double plain = 0;   // plain squared deviations, as a rendering shows them
+  double tempered = 0;  // as misfit() counts deviations
+  double plain = 0;     // plain squared deviations, as a rendering shows them
 };
 
 // Adds the cost of each sample of the texel, predicted from the others, per candidate.
@@ -164,7 +164,7 @@ void leave_one_out(std::span<const Observation> samples, int channels, const std
         squares += system.equations[e].weight * residual * residual;
         sums[p].plain += residual * residual;
       }
-      sums[p].capped += std::min(squares, kMostPerSample * channels);
+      sums[p].tempered += (kFreedom + channels) * std::log1p(squares / kFreedom);
     }
   }
 }
@@ -207,19 +207,19 @@ PriorChoice choose_prior(const Observations& observations, const std::vector<std
   std::vector<LeftOut> total(candidates.priors.size());
   for (std::size_t k = 0; k < sums.size(); ++k) {
     for (std::size_t p = 0; p < total.size(); ++p) {
-      total[p].capped += sums[k][p].capped;
+      total[p].tempered += sums[k][p].tempered;
       total[p].plain += sums[k][p].plain;
     }
     choice.samples += observations.of(tried[k * stride]).size();
   }
   std::size_t best = 0;
   for (std::size_t p = 1; p < total.size(); ++p) {
-    if (total[p].capped < total[best].capped && total[p].plain <= total[0].plain) best = p;
+    if (total[p].tempered < total[best].tempered && total[p].plain <= total[0].plain) best = p;
   }
   const double residuals = std::max<double>(1.0, static_cast<double>(choice.samples) * observations.channels);
   choice.prior = candidates.priors[best];
-  choice.left_out_error = total[best].capped / residuals;
-  choice.left_out_error_without = total[0].capped / residuals;
+  choice.left_out_error = total[best].tempered / residuals;
+  choice.left_out_error_without = total[0].tempered / residuals;
   return choice;
 }
 

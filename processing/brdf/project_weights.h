@@ -34,7 +34,7 @@ TexelWeights project_texel(std::span<const Observation> samples, int channels, c
 
 struct PriorChoice {
   TexelPrior prior;
-  double left_out_error = 0;            // mean of the capped squared deviations of left-out samples, with that prior
+  double left_out_error = 0;          // misfit of left-out samples, mean a sample and channel, with that prior
   double left_out_error_without = 0;    // the same with the material alone
   std::size_t samples = 0;              // that were left out in turn
 };

@@ -20,7 +20,8 @@ struct ReportSubject {
 };
 
 // The page. Every number on it is also in its <script type="application/json" id="data">: {"evaluation": as
-// `lumitexel evaluate --json` or null, "provenance": the fit's, "texels_by_material": [...]}.
+// `lumitexel evaluate --json` or null, "provenance": the fit's, "texels_by_material": [texels that were fitted to
+// samples]}.
 std::string model_report(const ReportSubject& subject, Progress& progress);
 
 }  // namespace lumitexel

@@ -14,7 +14,7 @@ h3 { font-size: 16px; margin: 24px 0 8px; font-weight: 650; }
 p { max-width: 76ch; margin: 0 0 14px; color: var(--quiet); }
 header p { font-size: 17px; }
 section { border-top: 1px solid var(--line); padding-top: 26px; margin-top: 36px; }
-.tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(150px, 1fr)); gap: 12px; margin-top: 22px; }
+.tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(138px, 1fr)); gap: 12px; margin-top: 22px; }
 .tile { background: var(--panel); border-radius: 8px; padding: 14px 16px; }
 .tile b { display: block; font-size: 24px; font-weight: 650; font-variant-numeric: tabular-nums; }
 .tile span { font-size: 13px; color: var(--quiet); display: block; line-height: 1.35; }

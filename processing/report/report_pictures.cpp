@@ -109,7 +109,7 @@ std::string sphere_figures(const Model& model) {
     text += "<figure>" + html::picture(sphere_picture(spheres[m], white), "sphere of material " + std::to_string(m)) +
             "<figcaption><span class=\"key\" style=\"background:" + css_colour(material_colour(static_cast<int>(m))) +
             "\"></span>" +
-            html::escaped("Material " + std::to_string(m) + ", " + share + " % of the texels; " +
+            html::escaped("Material " + std::to_string(m) + ", " + share + " % of the measured texels; " +
                           lobe_text(model.materials[m].brdf)) +
             "</figcaption></figure>\n";
   }

@@ -10,7 +10,7 @@
 
 namespace lumitexel {
 
-// For each material, how many texels of the atlas are of it.
+// For each material, how many texels are of it and were fitted to samples; filled-in ones do not count.
 std::vector<std::int64_t> texels_by_material(const Model& model);
 
 // ---- numbers (report_tables.cpp)

@@ -92,8 +92,10 @@ std::string bars(const Json& stages, const std::string& key, double unit, const 
 
 std::vector<std::int64_t> texels_by_material(const Model& model) {
   std::vector<std::int64_t> counts(model.materials.size());
-  for (const std::int16_t material : model.material) {
-    if (material != Model::kNoMaterial) ++counts[static_cast<std::size_t>(material)];
+  for (std::size_t texel = 0; texel < model.material.size(); ++texel) {
+    const std::int16_t material = model.material[texel];
+    if (material != Model::kNoMaterial && model.samples.data[texel] > 0.0f)
+      ++counts[static_cast<std::size_t>(material)];
   }
   return counts;
 }
@@ -110,7 +112,7 @@ std::string headline(const ReportSubject& subject, const Json& provenance) {
                      "from any side under any light. This page says what was found and how far it can be "
                      "trusted.</p>\n<div class=\"tiles\">";
   text += tile(std::to_string(subject.model.materials.size()), "materials found");
-  text += tile(std::to_string(texels), "texels (surface points) with a reflectance");
+  text += tile(std::to_string(texels), "surface points (texels) measured");
   text += tile(html::number(number_or_nan(provenance, "samples"), 8), "reflectance samples the fit used");
   text += tile(html::number(ratio), "error left of that of a single material (P-RMS / 1-RMS); smaller is better");
   if (subject.evaluation != nullptr) {

@@ -38,10 +38,11 @@ std::string stage_rows(const ErrorByStage& errors) {
 
 std::string sample_rows(const nlohmann::json& rms) {
   std::string text = "RMS of the fit's reflectance samples\n";
-  for (const auto& [stage, value] : rms.items()) {
+  for (const FitStage stage : kFitStages) {
+    const nlohmann::json& value = rms.at(to_string(stage));
     if (!value.is_number()) continue;
     char line[80];
-    std::snprintf(line, sizeof line, "  %-28s %10.5f\n", stage.c_str(), value.get<double>());
+    std::snprintf(line, sizeof line, "  %-28s %10.5f\n", to_string(stage), value.get<double>());
     text += line;
   }
   return text;

@@ -142,17 +142,23 @@ TEST(RenderView, EachStageShowsItsShareOfTheModel) {
   EXPECT_NEAR(renderer.render(view, {FitStage::Projection, 1}).radiance.at(2, 2), 0.15 + 0.175, kRounding);
 }
 
-TEST(RenderView, MoreRaysMeasureWhatAPixelCovers) {
+// The square is shifted so that it starts a given part into the first pixels, to the right and down.
+TEST(RenderView, OneRayAsksThePixelsCentreMoreMeasureWhatItCovers) {
   const Model model = model_of(square_mesh(), 1, 1, diffuse_brdf(1, 1, 1));
-  View view = view_from_above(10, 5.0);
-  view.camera.principal_x_px += 0.25;  // the square now starts a quarter into the first pixel
   const ViewRenderer renderer(model);
-  const Image one = renderer.render(view, {FitStage::Projection, 1}).radiance;
-  const Image sixteen = renderer.render(view, {FitStage::Projection, 16}).radiance;
-  EXPECT_NEAR(one.at(0, 5), 1.0, kRounding);
-  EXPECT_NEAR(sixteen.at(0, 5), 0.75, kRounding);
-  EXPECT_NEAR(sixteen.at(5, 5), 1.0, kRounding);
-  EXPECT_BAD_INPUT(renderer.render(view, {FitStage::Projection, 0}), "samples per pixel", "0");
+  const auto radiance = [&](double shift_px, int rays, int x, int y) {
+    View view = view_from_above(10, 5.0);
+    view.camera.principal_x_px += shift_px;
+    view.camera.principal_y_px += shift_px;
+    return renderer.render(view, {FitStage::Projection, rays}).radiance.at(x, y);
+  };
+  EXPECT_NEAR(radiance(0.45, 1, 0, 0), 1.0, kRounding);
+  EXPECT_EQ(radiance(0.55, 1, 0, 5), 0.0f);
+  EXPECT_EQ(radiance(0.55, 1, 5, 0), 0.0f);
+  EXPECT_NEAR(radiance(0.25, 16, 0, 5), 0.75, kRounding);
+  EXPECT_NEAR(radiance(0.25, 16, 5, 0), 0.75, kRounding);
+  EXPECT_NEAR(radiance(0.25, 16, 5, 5), 1.0, kRounding);
+  EXPECT_BAD_INPUT(radiance(0.0, 0, 0, 0), "samples per pixel", "0");
 }
 
 TEST(RenderView, MapsOfTheModelAreSeenThroughTheCamera) {

@@ -38,6 +38,8 @@ TEST(SimulatedTruth, SaysWhereLightAndCameraStoodAndWhatTheyShowed) {
   const Eigen::Vector3d in_rig = world->point_light_in_rig(20, 40);
   EXPECT_NEAR((Eigen::Vector3d(at[0], at[1], at[2]) - Eigen::Vector3d(in_rig.y(), -in_rig.x(), in_rig.z())).norm(), 0,
               1e-12);
+  // 10 W/sr, 2e5 electrons a second per radiance, 1.2 electrons a sample.
+  EXPECT_NEAR(truth.at("scale").at("value").at(1).get<double>(), 10.0 * 2e5 / 1.2, 1e-6);
   const Eigen::Isometry3d camera_from_world = pose_of(truth.at("poses").at(0).at("camera_from_world"));
   EXPECT_NEAR((camera_from_world.inverse().translation() - Eigen::Vector3d(0, -std::sqrt(0.75), 0.5)).norm(), 0, 1e-12);
 

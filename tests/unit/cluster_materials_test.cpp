@@ -1,0 +1,110 @@
+#include "processing/brdf/cluster_materials.h"
+
+#include <gtest/gtest.h>
+
+#include <oneapi/tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "processing/brdf/select_lumitexels.h"
+#include "tests/unit/synthetic_lumitexels.h"
+
+namespace lumitexel {
+namespace {
+
+struct ThreeMaterials {
+  std::vector<LafortuneBrdf> truth{one_lobe({0.20, 0.05, 0.04}, {0.3, 0.3, 0.3}, 0.7853981633974483, 8.0),
+                                   one_lobe({0.04, 0.06, 0.20}, {1.5, 1.5, 1.5}, 0.7853981633974483, 60.0),
+                                   one_lobe({0.01, 0.01, 0.01}, {3.0, 2.0, 1.0}, 0.7853981633974483, 25.0)};
+  Observations observations;
+  explicit ThreeMaterials(unsigned seed) {
+    std::mt19937 random(seed);
+    const int counts[] = {600, 300, 100};  // uneven on purpose
+    for (std::size_t j = 0; j < 3; ++j) add_lumitexels(observations, truth[j], counts[j], 6, 0.05, random);
+  }
+  std::size_t material_of(std::size_t lumitexel) const { return lumitexel < 600 ? 0 : lumitexel < 900 ? 1 : 2; }
+};
+
+ClusterOptions options_for(int materials) {
+  ClusterOptions options;
+  options.materials = materials;
+  options.fit.error = {0.05, 1e-3};
+  return options;
+}
+
+Clustering cluster(const Observations& observations, int materials) {
+  return cluster_materials(observations, select_lumitexels(observations, 500), options_for(materials), [](int) {});
+}
+
+TEST(ClusterMaterials, FindsUnevenMaterialsAndLabelsTheirTexels) {
+  constexpr double kFewestRight = 0.98;  // at 5 % noise and such different materials hardly a texel is ambiguous
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    const ThreeMaterials scene(seed);
+    const Clustering found = cluster(scene.observations, 3);
+    ASSERT_EQ(found.materials.size(), 3u);
+    std::array<std::array<int, 3>, 3> votes{};
+    for (std::size_t i = 0; i < found.label.size(); ++i) {
+      ++votes[static_cast<std::size_t>(found.label[i])][scene.material_of(i)];
+    }
+    double right = 0;
+    for (std::size_t j = 0; j < 3; ++j) {
+      const auto best = std::max_element(votes[j].begin(), votes[j].end());
+      right += *best;
+      const LafortuneBrdf& truth = scene.truth[static_cast<std::size_t>(best - votes[j].begin())];
+      // 5 % noise over at least 100 x 6 x 3 samples leaves well under 2 % in N.
+      EXPECT_NEAR(found.materials[j].brdf.lobes[0][0].log_exponent, truth.lobes[0][0].log_exponent, 0.06) << seed;
+    }
+    EXPECT_GE(right / static_cast<double>(found.label.size()), kFewestRight) << seed;
+  }
+}
+
+TEST(ClusterMaterials, TheSingleBrdfIsOneFitToEverything) {
+  const ThreeMaterials scene(4);
+  EXPECT_EQ(cluster(scene.observations, 1).materials.size(), 1u);
+  const Clustering found = cluster(scene.observations, 1);
+  double single = 0, material = 0;
+  for (std::size_t i = 0; i < found.label.size(); ++i) {
+    single += misfit(found.single, 3, scene.observations.of(i), {0.05, 1e-3});
+    material += misfit(found.materials[0].brdf, 3, scene.observations.of(i), {0.05, 1e-3});
+  }
+  EXPECT_NEAR(single / material, 1.0, 1e-3);
+}
+
+TEST(ClusterMaterials, ResultsDoNotDependOnTheNumberOfThreads) {
+  const ThreeMaterials scene(5);
+  const Clustering many = cluster(scene.observations, 3);
+  const oneapi::tbb::global_control one_thread(oneapi::tbb::global_control::max_allowed_parallelism, 1);
+  const Clustering one = cluster(scene.observations, 3);
+  EXPECT_EQ(many.label, one.label);
+  for (std::size_t j = 0; j < 3; ++j) {
+    EXPECT_EQ(many.materials[j].brdf.diffuse, one.materials[j].brdf.diffuse);
+    EXPECT_EQ(many.materials[j].brdf.lobes[0][0].log_exponent, one.materials[j].brdf.lobes[0][0].log_exponent);
+  }
+}
+
+TEST(ClusterMaterials, ALumitexelWithoutSamplesGetsTheLargestMaterial) {
+  ThreeMaterials scene(6);
+  scene.observations.first.push_back(scene.observations.samples.size());
+  const Clustering found = cluster(scene.observations, 3);
+  std::size_t largest = 0;
+  for (std::size_t j = 1; j < found.materials.size(); ++j) {
+    if (found.materials[j].members > found.materials[largest].members) largest = j;
+  }
+  EXPECT_EQ(found.label.back(), static_cast<int>(largest));
+}
+
+TEST(SelectLumitexels, PrefersThoseNearAMirrorReflection) {
+  const ThreeMaterials scene(8);
+  const auto chosen = select_lumitexels(scene.observations, 200);
+  EXPECT_LE(chosen.size(), 200u);
+  EXPECT_TRUE(std::is_sorted(chosen.begin(), chosen.end()));
+  double chosen_mean = 0, mean = 0;
+  for (const std::size_t i : chosen) chosen_mean += mirror_nearness(scene.observations.of(i)) / static_cast<double>(chosen.size());
+  const std::size_t all = scene.observations.lumitexels();
+  for (std::size_t i = 0; i < all; ++i) mean += mirror_nearness(scene.observations.of(i)) / static_cast<double>(all);
+  EXPECT_GT(chosen_mean, mean);
+}
+
+}  // namespace
+}  // namespace lumitexel

@@ -1,0 +1,102 @@
+#include "processing/brdf/fit_lobe.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "processing/brdf/lobe_starts.h"
+#include "tests/unit/synthetic_lumitexels.h"
+
+namespace lumitexel {
+namespace {
+
+std::vector<const Observation*> pointers(const Observations& observations) {
+  std::vector<const Observation*> list;
+  for (const Observation& sample : observations.samples) list.push_back(&sample);
+  return list;
+}
+
+double log_exponent_error(const LafortuneBrdf& fit, const LafortuneBrdf& truth) {
+  return fit.lobes[0][0].log_exponent - truth.lobes[0][0].log_exponent;
+}
+
+TEST(FitOneLobe, FindsTheTruthFromNoiselessSamples) {
+  constexpr double kFloatRounding = 1e-5;  // samples are stored as float
+  for (const double exponent : {5.0, 40.0, 400.0}) {
+    for (const double phi : {0.70, 0.7853981633974483, 0.86}) {
+      std::mt19937 random(3);
+      const LafortuneBrdf truth = one_lobe({0.1, 0.06, 0.2}, {1.5, 0.8, 0.4}, phi, exponent);
+      Observations observations;
+      add_lumitexels(observations, truth, 400, 8, 0.0, random);
+      const LobeFit fit = fit_one_lobe(pointers(observations), 3, nullptr, {});
+      EXPECT_TRUE(fit.converged);
+      EXPECT_FALSE(fit.rank_deficient);
+      EXPECT_NEAR(log_exponent_error(fit.brdf, truth), 0.0, 1e2 * kFloatRounding) << exponent << ' ' << phi;
+      EXPECT_NEAR(fit.brdf.lobes[0][0].phi, phi, 1e2 * kFloatRounding) << exponent << ' ' << phi;
+      for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_NEAR(fit.brdf.diffuse[c], truth.diffuse[c], kFloatRounding) << exponent << ' ' << phi;
+      }
+    }
+  }
+}
+
+TEST(FitOneLobe, CovarianceTellsTheSpreadOverNoise) {
+  // 60 seeds: the standard deviation itself is known to 1/sqrt(2*60) = 9 %; three of those either way.
+  constexpr int kSeeds = 60;
+  constexpr double kAllowed = 0.28;
+  const LafortuneBrdf truth = one_lobe({0.1, 0.06, 0.2}, {1.5, 0.8, 0.4}, 0.7853981633974483, 30.0);
+  LobeFitOptions options;
+  options.error = {0.05, 1e-4};
+  double squares = 0.0, stated = 0.0;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    std::mt19937 random(static_cast<unsigned>(100 + seed));
+    Observations observations;
+    add_lumitexels(observations, truth, 60, 8, 0.05, random);
+    const LobeFit fit = fit_one_lobe(pointers(observations), 3, nullptr, options);
+    squares += std::pow(log_exponent_error(fit.brdf, truth), 2);
+    const int row = LobeParameters::from(truth, true).log_exponent(0);
+    stated += fit.covariance(row, row);
+  }
+  EXPECT_NEAR(std::sqrt(squares / stated), 1.0, kAllowed);
+}
+
+TEST(FitOneLobe, SeparateShapesFollowEachChannel) {
+  std::mt19937 random(5);
+  LafortuneBrdf truth = one_lobe({0.1, 0.06, 0.2}, {1.5, 0.8, 0.9}, 0.7853981633974483, 20.0);
+  truth.lobes[0][2].log_exponent = std::log(80.0);
+  Observations observations;
+  add_lumitexels(observations, truth, 400, 8, 0.0, random);
+  LobeFitOptions options;
+  options.shared_shape = false;
+  const LobeFit fit = fit_one_lobe(pointers(observations), 3, nullptr, options);
+  EXPECT_NEAR(std::exp(fit.brdf.lobes[0][0].log_exponent), 20.0, 0.02);
+  EXPECT_NEAR(std::exp(fit.brdf.lobes[0][2].log_exponent), 80.0, 0.08);
+}
+
+TEST(FitOneLobe, SaysWhatTheSamplesCannotTell) {
+  EXPECT_TRUE(fit_one_lobe({}, 3, nullptr, {}).rank_deficient);
+
+  // One geometry only: kd, the peak and the shape cannot be told apart.
+  std::mt19937 random(7);
+  Observations observations;
+  add_lumitexels(observations, one_lobe({0.1, 0.1, 0.1}, {1, 1, 1}, 0.78, 20.0), 1, 1, 0.0, random);
+  observations.samples.resize(50, observations.samples[0]);
+  const LobeFit fit = fit_one_lobe(pointers(observations), 3, nullptr, {});
+  EXPECT_TRUE(fit.rank_deficient);
+  EXPECT_TRUE(fit.covariance.allFinite());
+  EXPECT_TRUE(std::isfinite(fit.cost));
+}
+
+TEST(FitOneLobe, ABlackSurfaceGivesABlackBrdfWithoutNaN) {
+  std::mt19937 random(9);
+  Observations observations;
+  add_lumitexels(observations, one_lobe({0, 0, 0}, {1e-12, 1e-12, 1e-12}, 0.78, 20.0), 50, 6, 0.0, random);
+  const LobeFit fit = fit_one_lobe(pointers(observations), 3, nullptr, {});
+  EXPECT_TRUE(fit.covariance.allFinite());
+  for (const Observation& sample : observations.samples) {
+    EXPECT_NEAR(predicted_reflectance(fit.brdf, 0, sample.geometry), 0.0, 1e-3);  // the error model's floor
+  }
+}
+
+}  // namespace
+}  // namespace lumitexel
