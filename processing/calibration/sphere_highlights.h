@@ -31,7 +31,7 @@ std::optional<std::vector<Blob>> find_sphere_row(const std::vector<Blob>& blobs,
 std::vector<std::pair<int, Blob>> find_point_highlights(const std::vector<Blob>& blobs, const CameraModel& camera,
                                                         const SphereLine& line);
 
-// Median over highlights of the lamp's colour balance, each fitted with free amplitudes. None for mono or without any.
+// Median over highlights of the lamp's colour balance, each fitted with free amplitudes (ones for mono). None without any.
 std::optional<ColourBalance> colour_balance(const std::vector<FittedHighlight>& free_fits);
 
 }  // namespace lumitexel

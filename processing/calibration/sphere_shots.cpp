@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kMostBlobs = 80;  // the search for the row grows with the cube
 constexpr int kReachPx = 8;             // of a fit's window about the blob
 // What a fit cannot know of itself: profile and pixel response differ from the model's, and the spheres stand still, so this does not average out.
-constexpr double kSystematicPx = 0.02;
+constexpr double kSystematicPx = 0.01;
 constexpr double kStandsElsewherePx = 1.5;
 
 struct SeenHighlight {
@@ -40,8 +40,14 @@ class SphereShotReader {
   const LinearSensor& sensor_;
 };
 
-void fit_all(const MosaicRadiance& image, const std::optional<ColourBalance>& balance, SeenInView& seen) {
-  for (SeenHighlight& highlight : seen) highlight.fit = fit_highlight(image, highlight.blob.pixel, kReachPx, balance);
+// `on` gives the sphere on whose surface the i-th one's highlight is symmetric, if any.
+using OnSphere = std::function<std::optional<SphereInView>(int)>;
+
+void fit_all(const MosaicRadiance& image, const std::optional<ColourBalance>& balance, const OnSphere& on,
+             SeenInView& seen) {
+  for (SeenHighlight& highlight : seen) {
+    highlight.fit = fit_highlight(image, highlight.blob.pixel, kReachPx, balance, on(highlight.sphere));
+  }
 }
 
 std::optional<ColourBalance> common_balance(const std::vector<SeenInView>& views) {
@@ -57,19 +63,19 @@ std::optional<ColourBalance> common_balance(const std::vector<SeenInView>& views
 // Finds highlights in every view's shot, fits them with free colours, then again with the lamp's common balance.
 template <typename Record, typename Find>
 std::vector<SeenInView> see(std::size_t views, const SphereShotReader& reader, const Record& record, const Find& find,
-                            const std::function<void()>& step) {
+                            const OnSphere& on, const std::function<void()>& step) {
   std::vector<SeenInView> seen(views);
   tbb::parallel_for(std::size_t{0}, views, [&](std::size_t v) {
     const MosaicRadiance image = reader.read(record(v));
     seen[v] = find(image);
-    fit_all(image, std::nullopt, seen[v]);
+    fit_all(image, std::nullopt, on, seen[v]);
     step();
   });
   const std::optional<ColourBalance> balance = common_balance(seen);
   if (!balance) return seen;
   tbb::parallel_for(std::size_t{0}, views, [&](std::size_t v) {
     if (seen[v].empty()) return;
-    fit_all(reader.read(record(v)), balance, seen[v]);
+    fit_all(reader.read(record(v)), balance, on, seen[v]);
   });
   return seen;
 }
@@ -160,12 +166,15 @@ LightSolution measure_lights(const CapturedFrames& frames, const std::vector<Sph
   progress.begin("sphere shots", static_cast<std::int64_t>(2 * views.size()), "shots");
   const auto ring_views = see(
       views.size(), reader, [&](std::size_t v) -> const FrameRecord& { return views[v].ring; },
-      [&](const MosaicRadiance& image) { return find_rings(image, camera, rig.spheres.count); }, step);
+      [&](const MosaicRadiance& image) { return find_rings(image, camera, rig.spheres.count); },
+      // Around a sphere's middle the picture's plane is as good, and where the sphere stands is not known yet.
+      [](int) { return std::nullopt; }, step);
   const std::vector<HighlightPixel> rings = ring_highlights(ring_views, rig.spheres.count);
   const SphereLine line = first_line(camera, rings, rig.spheres);
   const auto point_views = see(
       views.size(), reader, [&](std::size_t v) -> const FrameRecord& { return views[v].point; },
-      [&](const MosaicRadiance& image) { return find_points(image, camera, line); }, step);
+      [&](const MosaicRadiance& image) { return find_points(image, camera, line); },
+      [&](int k) { return SphereInView{camera, line.sphere(k)}; }, step);
   std::vector<std::vector<HighlightPixel>> points;
   for (const SeenInView& view : point_views) points.push_back(fitted(view));
   return solve_lights(camera, line, rig.ring_flash.radius_m, rings, points);
