@@ -1,4 +1,5 @@
 // Fits the one-lobe isotropic Lafortune model (section 6 of the paper) to samples by Levenberg-Marquardt, with covariance.
+// The lobe is a forward one, near the mirror direction, and enters only if the samples ask for it.
 #pragma once
 
 #include <Eigen/Core>
@@ -40,6 +41,7 @@ struct LobeFit {
   double cost = 0;             // mean over samples and channels of squared residual over variance
   int iterations = 0;
   bool converged = false;
+  bool has_lobe = true;        // false: the samples ask for diffuse light alone, and brdf's lobe is off
   bool rank_deficient = false; // some parameters are not determined by the samples; they kept their start
 };
 

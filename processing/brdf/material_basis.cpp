@@ -11,13 +11,16 @@ namespace {
 constexpr std::size_t kVariations = 2;
 constexpr std::size_t kMostOthers = kMaxBasis - 1 - kVariations;
 constexpr std::size_t kMostBordering = 3;
+constexpr double kMaxLogExponent = 11.512925464970229;  // ln 1e5
 constexpr double kDiffuseFactor = 1.5, kExponentFactor = 1.5;
 
 LafortuneBrdf varied(const LafortuneBrdf& brdf, double diffuse_factor, double exponent_factor) {
   LafortuneBrdf result = brdf;
   for (double& kd : result.diffuse) kd *= diffuse_factor;
   for (auto& lobe : result.lobes) {
-    for (auto& channel : lobe) channel.log_exponent = std::max(0.0, channel.log_exponent + std::log(exponent_factor));
+    for (auto& channel : lobe) {
+      channel.log_exponent = std::clamp(channel.log_exponent + std::log(exponent_factor), 0.0, kMaxLogExponent);
+    }
   }
   return result;
 }

@@ -23,7 +23,7 @@ double log_exponent_error(const LafortuneBrdf& fit, const LafortuneBrdf& truth) 
 TEST(FitOneLobe, FindsTheTruthFromNoiselessSamples) {
   constexpr double kFloatRounding = 1e-5;  // samples are stored as float
   for (const double exponent : {5.0, 40.0, 400.0}) {
-    for (const double phi : {0.70, 0.7853981633974483, 0.86}) {
+    for (const double phi : {0.70, 0.7853981633974483, 0.81}) {  // more, and N = 400 peaks beyond the samples
       std::mt19937 random(3);
       const LafortuneBrdf truth = one_lobe({0.1, 0.06, 0.2}, {1.5, 0.8, 0.4}, phi, exponent);
       Observations observations;
@@ -71,6 +71,36 @@ TEST(FitOneLobe, SeparateShapesFollowEachChannel) {
   const LobeFit fit = fit_one_lobe(pointers(observations), 3, nullptr, options);
   EXPECT_NEAR(std::exp(fit.brdf.lobes[0][0].log_exponent), 20.0, 0.02);
   EXPECT_NEAR(std::exp(fit.brdf.lobes[0][2].log_exponent), 80.0, 0.08);
+}
+
+TEST(FitOneLobe, AMatteSurfaceGetsNoLobeAndAFaintlyGlossyOneDoes) {
+  LobeFitOptions options;
+  options.error = {0.05, 1e-3};
+  int matte_right = 0, glossy_right = 0;
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    std::mt19937 random(seed);
+    Observations matte, glossy;
+    add_lumitexels(matte, one_lobe({0.10, 0.06, 0.2}, {1e-9, 1e-9, 1e-9}, 0.78, 20.0), 100, 6, 0.05, random);
+    add_lumitexels(glossy, one_lobe({0.10, 0.06, 0.2}, {0.05, 0.05, 0.05}, 0.78, 20.0), 100, 6, 0.05, random);
+    matte_right += !fit_one_lobe(pointers(matte), 3, nullptr, options).has_lobe;
+    glossy_right += fit_one_lobe(pointers(glossy), 3, nullptr, options).has_lobe;
+  }
+  EXPECT_GE(matte_right, 95);
+  EXPECT_GE(glossy_right, 95);
+}
+
+TEST(FitOneLobe, NeverReflectsMuchMoreThanItReceives) {
+  // Samples that rise steeply towards glancing light invite a lobe that explodes where nobody looked.
+  std::mt19937 random(11);
+  Observations observations;
+  add_lumitexels(observations, one_lobe({0.05, 0.05, 0.05}, {0.5, 0.5, 0.5}, 0.78, 20.0), 100, 6, 0.0, random);
+  for (Observation& sample : observations.samples) {
+    const double boost = std::pow(1.2 - sample.geometry.cos_i, 6.0) * 20.0;
+    for (float& r : sample.reflectance) r *= static_cast<float>(1.0 + boost);
+  }
+  const LobeFit fit = fit_one_lobe(pointers(observations), 3, nullptr, {});
+  const LafortuneLobe& lobe = fit.brdf.lobes[0][0];
+  EXPECT_LE(2.0 * M_PI * std::exp(lobe.log_peak) / (std::exp(lobe.log_exponent) + 2.0), 4.0 + 1e-9);
 }
 
 TEST(FitOneLobe, SaysWhatTheSamplesCannotTell) {
