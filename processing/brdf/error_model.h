@@ -5,7 +5,7 @@
 namespace lumitexel {
 
 struct ErrorModel {
-  double relative = 0.2;  // standard deviation as a fraction of the predicted reflectance
+  double relative = 0.3;  // standard deviation as a fraction of the predicted reflectance
   double floor = 1e-3;    // standard deviation for a prediction of zero, 1/sr
 
   double variance(double predicted, double measured_variance) const {

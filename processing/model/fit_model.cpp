@@ -3,6 +3,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "drivers/error.h"
 #include "processing/brdf/cluster_materials.h"
@@ -17,12 +18,25 @@
 namespace lumitexel {
 namespace {
 
-Clustering learn_materials(const Observations& observations, const FitOptions& options, Progress& progress) {
+// The error model on this session's own scale, so that a dark object is not drowned in its floor.
+ErrorModel error_model(const Observations& observations, const FitOptions& options) {
+  std::vector<float> values;
+  for (const Observation& sample : observations.samples) {
+    values.insert(values.end(), sample.reflectance.begin(), sample.reflectance.begin() + observations.channels);
+  }
+  if (values.empty()) return {};
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return {options.relative_error, std::max(1e-6, options.error_floor_share * static_cast<double>(*middle))};
+}
+
+Clustering learn_materials(const Observations& observations, const FitOptions& options, const ErrorModel& error,
+                           Progress& progress) {
   progress.begin("materials", options.materials, "materials");
   ClusterOptions cluster_options;
   cluster_options.materials = options.materials;
   cluster_options.fit.shared_shape = options.shared_lobe_shape;
-  cluster_options.fit.error = options.error;
+  cluster_options.fit.error = error;
   const auto selection = select_lumitexels(observations, options.learning_lumitexels);
   if (selection.empty()) {
     throw Error("fit: no surface point has " + std::to_string(kFewestSamples) +
@@ -32,18 +46,21 @@ Clustering learn_materials(const Observations& observations, const FitOptions& o
 }
 
 std::vector<TexelWeights> project_all(const Observations& observations, const std::vector<int>& label, const Model& model,
-                                      const FitOptions& options, FitSummary& summary, Progress& progress) {
+                                      const FitOptions& options, const ErrorModel& error, FitSummary& summary,
+                                      Progress& progress) {
   std::vector<std::vector<std::size_t>> members(model.materials.size());
   for (std::size_t i = 0; i < label.size(); ++i) members[static_cast<std::size_t>(label[i])].push_back(i);
   std::vector<TexelWeights> weights(label.size());
   progress.begin("texel weights", static_cast<std::int64_t>(model.materials.size()), "materials");
   for (std::size_t j = 0; j < members.size(); ++j) {
     const auto& basis = model.materials[j].basis;
-    summary.prior.push_back(choose_prior(observations, members[j], basis, options.error));
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    summary.prior.push_back(options.plain_projection ? PriorChoice{{kInfinity, kInfinity}, 0.0, 0.0, 0}
+                                                     : choose_prior(observations, members[j], basis, error));
     const TexelPrior prior = summary.prior.back().prior;
     oneapi::tbb::parallel_for(std::size_t{0}, members[j].size(), [&](std::size_t k) {
       const std::size_t i = members[j][k];
-      weights[i] = project_texel(observations.of(i), observations.channels, basis, options.error, prior);
+      weights[i] = project_texel(observations.of(i), observations.channels, basis, error, prior);
     });
     summary.texels_by_material.push_back(members[j].size());
     progress.update(static_cast<std::int64_t>(j + 1));
@@ -85,11 +102,13 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
   for (std::size_t i = 0; i < observations.lumitexels(); ++i) summary.starved += observations.of(i).empty();
 
   timer.begin("materials");
-  const Clustering clustering = learn_materials(observations, options, progress);
+  const ErrorModel error = error_model(observations, options);
+  summary.error = error;
+  const Clustering clustering = learn_materials(observations, options, error, progress);
   set_materials(clustering, atlas, gathered.set, observations, model);
 
   timer.begin("projection");
-  const auto weights = project_all(observations, clustering.label, model, options, summary, progress);
+  const auto weights = project_all(observations, clustering.label, model, options, error, summary, progress);
 
   timer.begin("model");
   summary.single = stage_error(model, FitStage::Single, observations, clustering.label, weights);

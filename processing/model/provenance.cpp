@@ -1,5 +1,6 @@
 #include "processing/model/provenance.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace lumitexel {
@@ -22,11 +23,13 @@ json stages_json(const std::vector<StageCost>& stages) {
   return list;
 }
 
+json finite_or_null(double value) { return std::isfinite(value) ? json(value) : json(); }
+
 json prior_json(const std::vector<PriorChoice>& prior) {
   json list = json::array();
   for (const PriorChoice& choice : prior) {
-    list.push_back({{"diffuse_width", choice.prior.diffuse_width},
-                    {"gloss_width", choice.prior.gloss_width},
+    list.push_back({{"diffuse_width", finite_or_null(choice.prior.diffuse_width)},
+                    {"gloss_width", finite_or_null(choice.prior.gloss_width)},
                     {"left_out_samples", choice.samples},
                     {"left_out_error", choice.left_out_error},
                     {"left_out_error_without", choice.left_out_error_without}});
@@ -43,8 +46,9 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
                        {"materials", options.materials},
                        {"learning_lumitexels", options.learning_lumitexels},
                        {"shared_lobe_shape", options.shared_lobe_shape},
-                       {"relative_error", options.error.relative},
-                       {"error_floor", options.error.floor}};
+                       {"plain_projection", options.plain_projection},
+                       {"relative_error", summary.error.relative},
+                       {"error_floor", summary.error.floor}};
   object["materials"] = summary.texels_by_material.size();
   object["lumitexels"] = summary.lumitexels;
   object["samples"] = summary.samples;

@@ -14,7 +14,7 @@ constexpr int kMostMaterials = 64;
 
 struct FitSettings {
   std::string session, out, quality = "standard", materials = "4";
-  bool separate_lobes = false;
+  bool separate_lobes = false, plain_projection = false;
 };
 
 FitOptions fit_options(const FitSettings& settings) {
@@ -30,6 +30,7 @@ FitOptions fit_options(const FitSettings& settings) {
     throw BadInput("--materials", settings.materials, "a whole number from 1 to 64");
   }
   options.shared_lobe_shape = !settings.separate_lobes;
+  options.plain_projection = settings.plain_projection;
   return options;
 }
 
@@ -91,6 +92,9 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
   command->add_option("--materials", settings->materials, "How many materials to look for, 1 to 64")->capture_default_str();
   command->add_flag("--separate-lobes", settings->separate_lobes,
                     "Give every colour channel a lobe shape of its own, as the paper does, instead of one for all");
+  command->add_flag("--plain-projection", settings->plain_projection,
+                    "Project texels by least squares without a prior, as the paper does: closer to the photographs of the "
+                    "fit, farther from others");
   command->callback([settings, &action] {
     action = [settings](CommandContext& context) { return fit_command(*settings, context); };
   });

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kKills = 50;
-constexpr double kMeanLife = 0.2;  // of an undisturbed capture's time: a session dies some four times on its way
+constexpr double kMeanLife = 0.15;  // of an undisturbed capture's time: a session dies some five times on its way
 constexpr int kFewestMidway = 15;  // kills that must meet a session with some frames and not all, or nothing was tested
 
 void capture_or_resume(const fs::path& session) {

@@ -146,14 +146,40 @@ TEST(ViewOrder, IsAPermutationAndShorterThanThePlansOwn) {
     planned = positions[i];
     ordered = positions[order[i]];
   }
-  EXPECT_LT(ordered_s, 0.7 * planned_s);  // measured 0.47; scattered views have much to gain
+  EXPECT_LT(ordered_s, 0.7 * planned_s);  // scattered views have much to gain
 }
 
-// Found by trying all orders.
 TEST(ViewOrder, IsOptimalOnALine) {
   const RigDescription rig = small_rig();
   const std::vector<RigPosition> positions = {{60, 0, 0}, {20, 0, 0}, {100, 0, 0}, {5, 0, 0}, {80, 0, 0}};
   EXPECT_EQ(short_order(positions, rig), (std::vector<std::size_t>{3, 1, 0, 4, 2}));
+}
+
+// Against the best of all orders. Measured: 1.008; always going to the nearest, without improving on that, 1.026.
+TEST(ViewOrder, IsNearlyOptimalForScatteredViews) {
+  const RigDescription rig = small_rig();
+  const auto length_s = [&](const std::vector<RigPosition>& positions, const std::vector<std::size_t>& order) {
+    double sum_s = sequential_motion_s({}, positions[order[0]], rig);
+    for (std::size_t i = 1; i < order.size(); ++i) sum_s += sequential_motion_s(positions[order[i - 1]], positions[order[i]], rig);
+    return sum_s;
+  };
+  double sum_of_ratios = 0;
+  constexpr int kSets = 8, kViews = 7;
+  const std::vector<PlannedView> views = scattered_plan(kSets * kViews).views;
+  for (int set = 0; set < kSets; ++set) {
+    std::vector<RigPosition> positions;
+    for (int i = 0; i < kViews; ++i) {
+      const PlannedView& view = views[static_cast<std::size_t>(set * kViews + i)];
+      positions.push_back({view.turntable_deg, view.light_azimuth_deg, view.light_elevation_deg});
+    }
+    std::vector<std::size_t> order(positions.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    double best_s = length_s(positions, order);
+    while (std::next_permutation(order.begin(), order.end())) best_s = std::min(best_s, length_s(positions, order));
+    sum_of_ratios += length_s(positions, short_order(positions, rig)) / best_s;
+  }
+  RecordProperty("ratio", std::to_string(sum_of_ratios / kSets));
+  EXPECT_LT(sum_of_ratios / kSets, 1.015);
 }
 
 TEST(CaptureEstimate, AddsUpByHand) {

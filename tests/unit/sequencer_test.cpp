@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "drivers/error.h"
 #include "rig/capture_estimate.h"
 #include "rig/new_session.h"
@@ -63,6 +65,14 @@ TEST_F(SequencerTest, TakesEveryShotUnderItsOwnLightAndSettings) {
   EXPECT_TRUE(store_.missing_shots().empty());
   expect_dark_and_still();
   EXPECT_TRUE(logged("info", "27 shots taken"));
+}
+
+// Two darks of one exposure differ in nothing but the shot that they are for.
+TEST_F(SequencerTest, NamesEveryFrameToTheCameraByItsShot) {
+  std::set<std::uint64_t> keys;
+  bench_->tamper = [&](Frame& frame) { keys.insert(frame.samples[0] * 65536u + frame.samples[1]); };
+  run();
+  EXPECT_EQ(keys.size(), shots_.size());
 }
 
 TEST_F(SequencerTest, NeitherMovesNorSwitchesWithoutNeed) {

@@ -1,0 +1,99 @@
+// From plan to report on the simulated rig, at half its resolution so that it takes under a minute.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "tests/endtoend/run_program.h"
+#include "tests/unit/temporary_folder.h"
+
+namespace lumitexel {
+namespace {
+
+const std::string kSource = LUMITEXEL_SOURCE_DIR;
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+void replace(std::string& text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  ASSERT_NE(at, std::string::npos) << "the bench no longer says '" << from << "'";
+  text.replace(at, from.size(), to);
+}
+
+// The shipped bench with a camera of half the width and height.
+std::string half_bench() {
+  std::string text = text_of(kSource + "/config/rigs/simulated.toml");
+  replace(text, "width_px = 1024", "width_px = 512");
+  replace(text, "height_px = 768", "height_px = 384");
+  replace(text, "focal_px = [2950.0, 2950.0]", "focal_px = [1475.0, 1475.0]");
+  replace(text, "principal_px = [516.3, 379.8]", "principal_px = [258.15, 189.9]");
+  return text;
+}
+
+TEST(CapturedSession, BecomesAModelThatPredictsAHeldOutPhotograph) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "bench.toml") << half_bench();
+  const std::string rig = (folder / "bench.toml").string() + " " + kSource + "/config/plans/small.toml";
+  const std::string session = (folder / "session").string(), model = (folder / "model").string();
+
+  const ProgramRun plan = run_program("plan " + rig + " --json");
+  ASSERT_EQ(plan.exit_code, 0) << plan.errors;
+  EXPECT_GE(plan.json().at("estimate_s").get<double>(), plan.json().at("lower_bound_s").get<double>());
+  EXPECT_FALSE(std::filesystem::exists(session));
+
+  const ProgramRun capture = run_program("capture " + rig + " --out " + session);
+  ASSERT_EQ(capture.exit_code, 0) << capture.errors;
+  const ProgramRun verify = run_program("verify " + session + " --json");
+  ASSERT_EQ(verify.exit_code, 0) << verify.output;
+  EXPECT_TRUE(verify.json().at("ok").get<bool>());
+  EXPECT_EQ(verify.json().at("frames"), plan.json().at("shots"));
+
+  const ProgramRun calibrate = run_program("calibrate " + session + " --json");
+  ASSERT_EQ(calibrate.exit_code, 0) << calibrate.errors;
+  // The goal of the whole rig, 5 mm at 1 m, though this camera has a quarter of its pixels.
+  EXPECT_LT(calibrate.json().at("light_error_mm").at("max").get<double>(), 5.0);
+
+  const ProgramRun fit = run_program("fit " + session + " --out " + model + " --quality draft --materials 4 --json");
+  ASSERT_EQ(fit.exit_code, 0) << fit.errors;
+  EXPECT_EQ(fit.json().at("materials"), 4);
+
+  const ProgramRun evaluate = run_program("evaluate " + model + " " + session + " --json");
+  ASSERT_EQ(evaluate.exit_code, 0) << evaluate.errors;
+  const auto rms = evaluate.json().at("rms");
+  EXPECT_LT(rms.at("cluster").get<double>(), rms.at("single").get<double>());
+  EXPECT_LT(rms.at("projection").get<double>(), rms.at("cluster").get<double>());
+  EXPECT_TRUE(rms.at("pfa").is_null());
+  const auto heldout = evaluate.json().at("heldout_by_stage");
+  const auto error = [&](const char* stage) { return heldout.at(stage).at("relative_rms").get<double>(); };
+  EXPECT_LT(error("cluster"), 0.9 * error("single"));
+  EXPECT_LT(error("projection"), 1.02 * error("cluster"));  // one photograph: equal within what a few pixels decide
+
+  const ProgramRun report = run_program("report " + model + " --session " + session);
+  ASSERT_EQ(report.exit_code, 0) << report.errors;
+  EXPECT_GT(std::filesystem::file_size(std::filesystem::path(model) / "report.html"), 100'000u);
+}
+
+TEST(Program, BadUsageAndBadInputExitWithTwoAndLeaveNothing) {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "session").string();
+  EXPECT_EQ(run_program("").exit_code, 2);
+  EXPECT_EQ(run_program("photograph").exit_code, 2);
+  EXPECT_EQ(run_program("--help").exit_code, 0);
+  for (const std::string& arguments :
+       {"plan missing.toml " + kSource + "/config/plans/small.toml",
+        "capture " + kSource + "/config/rigs/simulated.toml missing.toml --out " + out,
+        "fit " + out + " --out " + out + "_model", "render " + out + " --out x.exr", "verify " + out,
+        "fit " + out + " --out " + out + "_model --materials many"}) {
+    const ProgramRun run = run_program(arguments);
+    EXPECT_EQ(run.exit_code, 2) << arguments << '\n' << run.errors;
+    EXPECT_EQ(std::count(run.errors.begin(), run.errors.end(), '\n'), 1) << run.errors;
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+}  // namespace
+}  // namespace lumitexel

@@ -1,0 +1,19 @@
+// Runs the lumitexel program as a user does and reads what it says.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace lumitexel {
+
+struct ProgramRun {
+  int exit_code = -1;
+  std::string output;  // stdout
+  std::string errors;  // stderr
+  nlohmann::json json() const { return nlohmann::json::parse(output); }
+};
+
+// arguments: as typed in a shell, after the program's name.
+ProgramRun run_program(const std::string& arguments);
+
+}  // namespace lumitexel
