@@ -14,9 +14,9 @@ class Builder {
   explicit Builder(int cells) : cells_(cells), index_(power_of_side(3), kUnseen) {}
 
   std::uint32_t vertex(const Place& place) {
-    std::uint32_t& index = index_[static_cast<std::size_t>(place[2]) * power_of_side(2) +
-                                  static_cast<std::size_t>(place[1]) * power_of_side(1) +
-                                  static_cast<std::size_t>(place[0])];
+    std::uint32_t& index =
+        index_[static_cast<std::size_t>(place[2]) * power_of_side(2) +
+               static_cast<std::size_t>(place[1]) * power_of_side(1) + static_cast<std::size_t>(place[0])];
     if (index == kUnseen) {
       index = static_cast<std::uint32_t>(mesh_.positions.size());
       Eigen::Vector3d x;

@@ -52,12 +52,12 @@ Eigen::Vector3d ArmAlignment::position(const Parameters& p, double azimuth_deg, 
   const Eigen::Vector3d direction = (nominal - nominal_.pivot_in_rig) / nominal_.radius_m;
   const Eigen::Vector3d turn = p.segment<3>(3);
   const double angle = turn.norm();
-  const Eigen::Vector3d turned =
-      angle > 0.0 ? Eigen::AngleAxisd(angle, turn / angle) * direction : direction;
+  const Eigen::Vector3d turned = angle > 0.0 ? Eigen::AngleAxisd(angle, turn / angle) * direction : direction;
   return nominal_.pivot_in_rig + p.head<3>() + (nominal_.radius_m + p[6]) * turned;
 }
 
-Eigen::Matrix<double, 3, ArmAlignment::kParameters> ArmAlignment::jacobian(double azimuth_deg, double elevation_deg) const {
+Eigen::Matrix<double, 3, ArmAlignment::kParameters> ArmAlignment::jacobian(double azimuth_deg,
+                                                                           double elevation_deg) const {
   Eigen::Matrix<double, 3, kParameters> j;
   constexpr double kStep = 1e-5;  // metres and radians; the arm is smooth over metres
   for (int k = 0; k < kParameters; ++k) {

@@ -1,6 +1,8 @@
-// How the light's arm really stands: a small correction of its nominal geometry, from all lights that the spheres measured.
+// How the light's arm really stands: a small correction of its nominal geometry, from all lights that the spheres
+// measured.
 //
-//   position(azimuth, elevation) = pivot + offset + (radius + stretch) * turn * nominal direction(azimuth, elevation + lift)
+//   position(azimuth, elevation) = pivot + offset + (radius + stretch) * turn * nominal direction(azimuth, elevation +
+//   lift)
 //
 // with `turn` a small rotation (its part about the azimuth axis is the azimuth's zero error) and `lift` the elevation's
 // zero error. It predicts the light where no sphere shot was taken (the gray card's bracket), tells a mismeasured view
@@ -15,9 +17,9 @@
 namespace lumitexel {
 
 struct ArmSample {
-  double azimuth_deg = 0, elevation_deg = 0;                     // as read back
-  Eigen::Vector3d position_in_rig = Eigen::Vector3d::Zero();     // as measured
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();      // m^2
+  double azimuth_deg = 0, elevation_deg = 0;                  // as read back
+  Eigen::Vector3d position_in_rig = Eigen::Vector3d::Zero();  // as measured
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();   // m^2
 };
 
 struct ArmPrediction {
@@ -30,8 +32,8 @@ class ArmAlignment {
   static constexpr int kParameters = 8;
   using Parameters = Eigen::Matrix<double, kParameters, 1>;  // offset (3, m), turn (3, rad), stretch (m), lift (rad)
 
-  // Weighted least squares with a heavy-tailed loss, and with a weak prior (2 cm, 2 degrees) so that a few views suffice.
-  // Without samples: the nominal geometry with the prior's uncertainty.
+  // Weighted least squares with a heavy-tailed loss, and with a weak prior (2 cm, 2 degrees) so that a few views
+  // suffice. Without samples: the nominal geometry with the prior's uncertainty.
   ArmAlignment(const LightPositionerDescription& nominal, const std::vector<ArmSample>& samples);
 
   ArmPrediction predict(double azimuth_deg, double elevation_deg) const;
@@ -42,7 +44,9 @@ class ArmAlignment {
   bool is_outlier(const ArmSample& sample) const;
 
   const Parameters& correction() const { return correction_; }
-  double scatter_m() const { return scatter_m_; }    // of single positions about the arm, per axis, beyond their covariances
+  double scatter_m() const {
+    return scatter_m_;
+  }  // of single positions about the arm, per axis, beyond their covariances
   double residual_m() const { return residual_m_; }  // rms distance of the samples from the arm, outliers left out
 
  private:

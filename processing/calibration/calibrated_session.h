@@ -33,7 +33,7 @@ struct Light {
 };
 
 struct View {
-  std::string name;   // as in the session: "fit_000.exr" or the plan's view name
+  std::string name;  // as in the session: "fit_000.exr" or the plan's view name
   bool heldout = false;
   CameraModel camera;
   Eigen::Isometry3d camera_from_world = Eigen::Isometry3d::Identity();
@@ -47,9 +47,9 @@ struct CalibrationSummary;  // calibration_summary.h
 
 struct CalibratedSession {
   int channels = 3;
-  std::vector<View> views;  // in the session's order, fit and held out mixed
-  Mesh mesh;                // the coarse mesh in `world`
-  std::string key;          // hash of the session's content and the calibration's options
+  std::vector<View> views;           // in the session's order, fit and held out mixed
+  Mesh mesh;                         // the coarse mesh in `world`
+  std::string key;                   // hash of the session's content and the calibration's options
   double gray_card_scale_sigma = 0;  // relative one-sigma of the absolute scale; 0 if unknown
 };
 

@@ -12,7 +12,9 @@ using nlohmann::json;
 constexpr int kVersion = 1;
 
 json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-Eigen::Vector3d vector_from(const json& j) { return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()}; }
+Eigen::Vector3d vector_from(const json& j) {
+  return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
+}
 
 json pose_json(const Eigen::Isometry3d& pose) {
   json rows = json::array();
@@ -31,7 +33,8 @@ Eigen::Isometry3d pose_from(const json& j) {
 }
 
 json camera_json(const CameraModel& m) {
-  return {{"width_px", m.width_px}, {"height_px", m.height_px},
+  return {{"width_px", m.width_px},
+          {"height_px", m.height_px},
           {"params", {m.focal_x_px, m.focal_y_px, m.principal_x_px, m.principal_y_px, m.k1, m.k2, m.p1, m.p2}}};
 }
 
@@ -51,10 +54,11 @@ json view_json(const View& view) {
           {"camera", camera_json(view.camera)},
           {"camera_from_world", pose_json(view.camera_from_world)},
           {"photograph", view.photograph.filename().string()},
-          {"light", {{"point", view.light.type == Light::Type::Point},
-                     {"vector", vector_json(view.light.vector_in_world)},
-                     {"intensity", view.light.intensity},
-                     {"sigma_m", view.light.sigma_m}}}};
+          {"light",
+           {{"point", view.light.type == Light::Type::Point},
+            {"vector", vector_json(view.light.vector_in_world)},
+            {"intensity", view.light.intensity},
+            {"sigma_m", view.light.sigma_m}}}};
 }
 
 View view_from(const json& j, const std::filesystem::path& directory) {
@@ -73,26 +77,44 @@ View view_from(const json& j, const std::filesystem::path& directory) {
 }
 
 json light_json(const LightSummary& l) {
-  return {{"view", l.view}, {"position", vector_json(l.position_in_world)}, {"sigma_m", l.sigma_m},
-          {"from_spheres", l.from_spheres}, {"highlights", l.highlights}, {"outliers", l.outliers},
-          {"residual_px", l.residual_px}, {"spheres_alone", vector_json(l.spheres_alone_in_world)},
-          {"spheres_alone_sigma_m", l.spheres_alone_sigma_m}, {"off_the_arm", l.off_the_arm}};
+  return {{"view", l.view},
+          {"position", vector_json(l.position_in_world)},
+          {"sigma_m", l.sigma_m},
+          {"from_spheres", l.from_spheres},
+          {"highlights", l.highlights},
+          {"outliers", l.outliers},
+          {"residual_px", l.residual_px},
+          {"spheres_alone", vector_json(l.spheres_alone_in_world)},
+          {"spheres_alone_sigma_m", l.spheres_alone_sigma_m},
+          {"off_the_arm", l.off_the_arm}};
 }
 
 LightSummary light_from(const json& j) {
-  return {j.at("view").get<std::string>(), vector_from(j.at("position")), j.at("sigma_m").get<double>(),
-          j.at("from_spheres").get<bool>(), j.at("highlights").get<int>(), j.at("outliers").get<int>(),
-          j.at("residual_px").get<double>(), vector_from(j.at("spheres_alone")),
-          j.at("spheres_alone_sigma_m").get<double>(), j.at("off_the_arm").get<bool>()};
+  return {j.at("view").get<std::string>(),
+          vector_from(j.at("position")),
+          j.at("sigma_m").get<double>(),
+          j.at("from_spheres").get<bool>(),
+          j.at("highlights").get<int>(),
+          j.at("outliers").get<int>(),
+          j.at("residual_px").get<double>(),
+          vector_from(j.at("spheres_alone")),
+          j.at("spheres_alone_sigma_m").get<double>(),
+          j.at("off_the_arm").get<bool>()};
 }
 
 json summary_json(const CalibrationSummary& s) {
   json lights = json::array();
   for (const LightSummary& light : s.lights) lights.push_back(light_json(light));
-  return {{"lights", lights}, {"sphere_residual_px", s.sphere_residual_px}, {"sphere_sigma_scale", s.sphere_sigma_scale},
-          {"arm_scatter_m", s.arm_scatter_m}, {"arm_residual_m", s.arm_residual_m}, {"intensity", s.intensity},
-          {"gray_card_pixel_scatter", s.gray_card_pixel_scatter}, {"scale_sigma", s.scale_sigma},
-          {"hot_pixels", s.hot_pixels}, {"views_without_silhouette", s.views_without_silhouette}};
+  return {{"lights", lights},
+          {"sphere_residual_px", s.sphere_residual_px},
+          {"sphere_sigma_scale", s.sphere_sigma_scale},
+          {"arm_scatter_m", s.arm_scatter_m},
+          {"arm_residual_m", s.arm_residual_m},
+          {"intensity", s.intensity},
+          {"gray_card_pixel_scatter", s.gray_card_pixel_scatter},
+          {"scale_sigma", s.scale_sigma},
+          {"hot_pixels", s.hot_pixels},
+          {"views_without_silhouette", s.views_without_silhouette}};
 }
 
 CalibrationSummary summary_from(const json& j) {
@@ -116,8 +138,11 @@ void write_calibrated_views(const std::filesystem::path& directory, const Calibr
                             const CalibrationSummary& summary) {
   json views = json::array();
   for (const View& view : session.views) views.push_back(view_json(view));
-  const json document = {{"version", kVersion}, {"key", session.key}, {"channels", session.channels},
-                         {"gray_card_scale_sigma", session.gray_card_scale_sigma}, {"views", views},
+  const json document = {{"version", kVersion},
+                         {"key", session.key},
+                         {"channels", session.channels},
+                         {"gray_card_scale_sigma", session.gray_card_scale_sigma},
+                         {"views", views},
                          {"summary", summary_json(summary)}};
   const std::filesystem::path temporary = directory / "views.json.part";
   {

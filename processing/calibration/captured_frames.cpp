@@ -37,8 +37,9 @@ std::vector<FrameRecord> CapturedFrames::of(ShotKind kind, const std::string& vi
     if (taken.shot.kind == kind && taken.shot.view == view) records.push_back(taken.record);
   }
   if (records.empty()) {
-    throw BadInput(session_.directory().string(), std::string("no ") + to_string(kind) + " frame" +
-                   (view.empty() ? "" : " of view " + view), "the shots of a capture plan");
+    throw BadInput(session_.directory().string(),
+                   std::string("no ") + to_string(kind) + " frame" + (view.empty() ? "" : " of view " + view),
+                   "the shots of a capture plan");
   }
   return records;
 }
@@ -47,7 +48,8 @@ Frame CapturedFrames::load(const FrameRecord& record) const {
   const std::string path = session_.frame_path(record).string();
   std::ifstream file(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!file || sha256_hex(bytes) != record.sha256) throw Corrupt(path + ": missing, or not the bytes that were committed");
+  if (!file || sha256_hex(bytes) != record.sha256)
+    throw Corrupt(path + ": missing, or not the bytes that were committed");
   Frame frame = decode_pgm(bytes, path);
   frame.reported = record.reported;
   return frame;

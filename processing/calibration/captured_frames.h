@@ -12,11 +12,12 @@ namespace lumitexel {
 
 class CapturedFrames {
  public:
-  // Keeps a reference to the session. Throws BadInput naming it if shots are missing: only a whole session is calibrated.
+  // Keeps a reference to the session. Throws BadInput naming it if shots are missing: only a whole session is
+  // calibrated.
   explicit CapturedFrames(const SessionStore& session);
 
-  // The frames of a kind (and view; "" for gray card and darks), in the order of their indices. Throws BadInput if there
-  // are none.
+  // The frames of a kind (and view; "" for gray card and darks), in the order of their indices. Throws BadInput if
+  // there are none.
   std::vector<FrameRecord> of(ShotKind kind, const std::string& view = "") const;
   // Pixels and reported settings. Throws Corrupt if the file is not what was committed.
   Frame load(const FrameRecord& record) const;

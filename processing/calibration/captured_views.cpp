@@ -54,8 +54,10 @@ CapturedInputs read_inputs(const SessionStore& session) {
 std::vector<ViewFrames> frames_of_views(const CapturedFrames& frames, const CapturePlan& plan) {
   std::vector<ViewFrames> views;
   for (const PlannedView& view : plan.views) {
-    views.push_back({frames.of(ShotKind::Object, view.name), frames.of(ShotKind::Silhouette, view.name)[0],
-                     {frames.of(ShotKind::SpheresRing, view.name)[0], frames.of(ShotKind::SpheresPoint, view.name)[0]}});
+    views.push_back(
+        {frames.of(ShotKind::Object, view.name),
+         frames.of(ShotKind::Silhouette, view.name)[0],
+         {frames.of(ShotKind::SpheresRing, view.name)[0], frames.of(ShotKind::SpheresPoint, view.name)[0]}});
   }
   return views;
 }
@@ -67,7 +69,7 @@ std::vector<ArmSample> arm_samples(const LightSolution& solution, const std::vec
   for (std::size_t v = 0; v < views.size(); ++v) {
     const FrameRecord& shot = views[v].spheres.point;
     samples.push_back({shot.light_azimuth_deg, shot.light_elevation_deg, rig_from_camera * solution.lights[v].position,
-                       turn * solution.lights[v].covariance * turn.transpose()});
+                       turn * solution.lights[v].own_covariance * turn.transpose()});
   }
   return samples;
 }
@@ -82,9 +84,19 @@ ArmAlignment align_arm(const CapturedInputs& in, const LightSolution& solution, 
 
 double per_axis_sigma(const Eigen::Matrix3d& covariance) { return std::sqrt(covariance.trace() / 3.0); }
 
+// What the lights' errors have in common, per axis: the least over the views of what the sphere line adds.
+double shared_sigma(const LightSolution& solution) {
+  std::vector<double> variances;
+  for (const MeasuredLight& light : solution.lights) {
+    if (light.measured) variances.push_back(((light.covariance - light.own_covariance).trace()) / 3.0);
+  }
+  if (variances.empty()) return 0.0;
+  return std::sqrt(std::max(0.0, *std::min_element(variances.begin(), variances.end())));
+}
+
 // The light of one view in the turntable's frame, and what is to be said about it.
 LightSummary summarise_light(const std::string& name, const MeasuredLight& measured, const ArmSample& sample,
-                             const ArmAlignment& arm, const Eigen::Isometry3d& table_from_rig) {
+                             const ArmAlignment& arm, double shared_sigma_m, const Eigen::Isometry3d& table_from_rig) {
   LightSummary light;
   light.view = name;
   light.highlights = measured.highlights;
@@ -95,10 +107,11 @@ LightSummary summarise_light(const std::string& name, const MeasuredLight& measu
   const ArmPrediction best =
       light.from_spheres ? arm.combine(sample) : arm.predict(sample.azimuth_deg, sample.elevation_deg);
   light.position_in_world = table_from_rig * best.position_in_rig;
-  light.sigma_m = per_axis_sigma(best.covariance);
+  // An error of the sphere line is in all views alike: no number of them averages it away.
+  light.sigma_m = std::hypot(per_axis_sigma(best.covariance), shared_sigma_m);
   if (measured.measured) {
     light.spheres_alone_in_world = table_from_rig * sample.position_in_rig;
-    light.spheres_alone_sigma_m = per_axis_sigma(sample.covariance);
+    light.spheres_alone_sigma_m = per_axis_sigma(measured.covariance);
   }
   return light;
 }
@@ -109,7 +122,7 @@ struct Scale {
 };
 
 Scale absolute_scale(const CapturedInputs& in, const CapturedFrames& frames, const DarkLibrary& darks,
-                     const ArmAlignment& arm, CalibrationSummary& summary) {
+                     const ArmAlignment& arm, double shared_sigma_m, CalibrationSummary& summary) {
   const std::vector<FrameRecord> bracket = frames.of(ShotKind::GrayCard);
   const ArmPrediction light = arm.predict(bracket[0].light_azimuth_deg, bracket[0].light_elevation_deg);
   const MosaicRadiance card = merge_bracket(frames.load(bracket), darks, in.sensor);
@@ -118,7 +131,8 @@ Scale absolute_scale(const CapturedInputs& in, const CapturedFrames& frames, con
   Scale scale{measured.intensity, *std::max_element(measured.relative_sigma.begin(), measured.relative_sigma.end())};
   // Intensity goes with the distance squared.
   const double distance_m = (light.position_in_rig - in.rig.gray_card.centre_in_rig).norm();
-  scale.sigma = std::hypot(scale.sigma, 2.0 * per_axis_sigma(light.covariance) / distance_m);
+  scale.sigma =
+      std::hypot(scale.sigma, 2.0 * std::hypot(per_axis_sigma(light.covariance), shared_sigma_m) / distance_m);
   summary.intensity = measured.intensity;
   summary.gray_card_pixel_scatter = measured.pixel_scatter;
   summary.scale_sigma = scale.sigma;
@@ -176,16 +190,19 @@ std::pair<CalibratedSession, CalibrationSummary> measure(const SessionStore& ses
   const LightSolution lights = measure_lights(frames, sphere_shots, darks, in.sensor, in.camera, in.rig, progress);
   const std::vector<ArmSample> samples = arm_samples(lights, records, in.rig.camera.camera_from_rig.inverse());
   const ArmAlignment arm = align_arm(in, lights, samples);
+  const double shared_sigma_m = shared_sigma(lights);
   summary.sphere_residual_px = lights.residual_px;
   summary.sphere_sigma_scale = lights.sigma_scale;
   summary.arm_scatter_m = arm.scatter_m();
   summary.arm_residual_m = arm.residual_m();
   for (std::size_t v = 0; v < records.size(); ++v) {
-    const Eigen::Isometry3d table_from_rig = in.rig.turntable.rig_from_table(records[v].spheres.point.turntable_deg).inverse();
-    summary.lights.push_back(summarise_light(in.plan.views[v].name, lights.lights[v], samples[v], arm, table_from_rig));
+    const Eigen::Isometry3d table_from_rig =
+        in.rig.turntable.rig_from_table(records[v].spheres.point.turntable_deg).inverse();
+    summary.lights.push_back(
+        summarise_light(in.plan.views[v].name, lights.lights[v], samples[v], arm, shared_sigma_m, table_from_rig));
   }
 
-  const Scale scale = absolute_scale(in, frames, darks, arm, summary);
+  const Scale scale = absolute_scale(in, frames, darks, arm, shared_sigma_m, summary);
   calibrated.gray_card_scale_sigma = scale.sigma;
   calibrated.channels = mosaic_channels(in.rig.camera.limits.mosaic);
   calibrated.views = make_views(in, records, summary.lights, scale, directory);
@@ -203,8 +220,16 @@ std::pair<CalibratedSession, CalibrationSummary> measure(const SessionStore& ses
 
 CameraModel camera_model(const CameraDescription& camera) {
   const LensDescription& lens = camera.lens;
-  return {camera.limits.width_px, camera.limits.height_px, lens.focal_x_px, lens.focal_y_px, lens.principal_x_px,
-          lens.principal_y_px, lens.k1, lens.k2, lens.p1, lens.p2};
+  return {camera.limits.width_px,
+          camera.limits.height_px,
+          lens.focal_x_px,
+          lens.focal_y_px,
+          lens.principal_x_px,
+          lens.principal_y_px,
+          lens.k1,
+          lens.k2,
+          lens.p1,
+          lens.p2};
 }
 
 std::pair<CalibratedSession, CalibrationSummary> calibrate_captured(const SessionStore& session, Progress& progress) {

@@ -39,7 +39,8 @@ PixelBox picture_of(const CardPlane& plane, const CameraModel& camera, const Eig
       const Eigen::Vector3d corner = plane.centre + plane.half_m * (u * plane.right + v * plane.up);
       const Eigen::Vector3d in_camera = camera_from_rig * corner;
       if (in_camera.z() <= 0.0 || !camera.contains(camera.project(in_camera))) {
-        throw BadInput("rig.toml: gray_card", "a corner of its inner part is out of the picture", "a card in the camera's sight");
+        throw BadInput("rig.toml: gray_card", "a corner of its inner part is out of the picture",
+                       "a card in the camera's sight");
       }
       low = low.min(camera.project(in_camera).array());
       high = high.max(camera.project(in_camera).array());
@@ -69,7 +70,8 @@ RobustMean robust_mean(std::vector<double> values) {
   const double median = values[values.size() / 2];
   std::vector<double> deviations;
   for (const double value : values) deviations.push_back(std::abs(value - median));
-  std::nth_element(deviations.begin(), deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2), deviations.end());
+  std::nth_element(deviations.begin(), deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2),
+                   deviations.end());
   const double bound = kClipSigmas * 1.4826 * deviations[deviations.size() / 2];
   RobustMean result;
   double sum = 0.0, squares = 0.0;
@@ -94,7 +96,8 @@ GrayCardIntensity measure_gray_card(const MosaicRadiance& card, const CameraMode
   const Eigen::Isometry3d rig_from_camera = camera_from_rig.inverse();
   const Eigen::Vector3d eye = rig_from_camera.translation();
   if ((eye - plane.centre).dot(plane.normal) <= 0.0 || (light_in_rig - plane.centre).dot(plane.normal) <= 0.0) {
-    throw BadInput("rig.toml: gray_card.normal_in_rig", "the card faces away from the camera or the light", "a visible, lit card");
+    throw BadInput("rig.toml: gray_card.normal_in_rig", "the card faces away from the camera or the light",
+                   "a visible, lit card");
   }
   const PixelBox box = picture_of(plane, camera, camera_from_rig);
   std::vector<std::vector<double>> values(static_cast<std::size_t>(mosaic_channels(card.mosaic)));
@@ -104,13 +107,15 @@ GrayCardIntensity measure_gray_card(const MosaicRadiance& card, const CameraMode
       const Eigen::Vector3d direction = rig_from_camera.linear() * camera.unproject({x + 0.5, y + 0.5});
       const double expected = radiance_per_intensity(plane, eye, direction, light_in_rig, description.albedo);
       if (expected <= 0.0) continue;
-      values[static_cast<std::size_t>(mosaic_channel(card.mosaic, x, y))].push_back(card.value[card.index(x, y)] / expected);
+      values[static_cast<std::size_t>(mosaic_channel(card.mosaic, x, y))].push_back(card.value[card.index(x, y)] /
+                                                                                    expected);
     }
   }
   GrayCardIntensity result;
   for (std::vector<double>& channel : values) {
     if (channel.empty()) {
-      throw BadInput("gray-card bracket", "no usable pixel on the card in some channel", "exposures in which the card is neither dark nor saturated");
+      throw BadInput("gray-card bracket", "no usable pixel on the card in some channel",
+                     "exposures in which the card is neither dark nor saturated");
     }
     const RobustMean mean = robust_mean(std::move(channel));
     result.intensity.push_back(mean.mean);

@@ -14,10 +14,11 @@
 namespace lumitexel {
 
 struct GrayCardIntensity {
-  std::vector<double> intensity;        // per channel, in the radiance's unit times m^2 (times sr)
-  std::vector<double> relative_sigma;   // of the mean, from the scatter of the pixels
-  std::vector<double> pixel_scatter;    // relative standard deviation of single pixels: shadows, dirt, a tilted card show here
-  std::vector<std::int64_t> pixels;     // used, per channel
+  std::vector<double> intensity;       // per channel, in the radiance's unit times m^2 (times sr)
+  std::vector<double> relative_sigma;  // of the mean, from the scatter of the pixels
+  std::vector<double>
+      pixel_scatter;  // relative standard deviation of single pixels: shadows, dirt, a tilted card show here
+  std::vector<std::int64_t> pixels;  // used, per channel
 };
 
 // `card` is the merged gray-card bracket, `light_in_rig` where the light stood. The card's picture is inset by 15 % of

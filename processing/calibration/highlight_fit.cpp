@@ -36,7 +36,10 @@ constexpr double kShapeSigma = 2.0;    // a weak prior: where the pixels cannot 
 // following the centre. In the picture's plane u = (x, y, 1); on a sphere u is the normal.
 class Domain {
  public:
-  explicit Domain(const std::optional<SphereInView>& sphere) : sphere_(sphere) {}
+  explicit Domain(const HighlightShape& shape) : sphere_(shape.sphere), offsets_px_(shape.offsets_px) {
+    if (offsets_px_.empty()) offsets_px_.emplace_back(0.0, 0.0);
+  }
+  const std::vector<Eigen::Vector2d>& offsets_px() const { return offsets_px_; }
 
   struct Place {
     Eigen::Vector3d u;
@@ -72,6 +75,7 @@ class Domain {
 
  private:
   std::optional<SphereInView> sphere_;
+  std::vector<Eigen::Vector2d> offsets_px_;
 };
 
 class PeakModel {
@@ -145,11 +149,14 @@ class PeakModel {
     double sum = 0.0;
     for (std::size_t i = 0; i < kPlaces; ++i) {
       const Domain::Place& place = places_[sample * kPlaces + i];
-      const Eigen::Vector2d t = rows * place.u;
-      const double a = p[2] * t.x(), b = p[3] * t.x() + p[4] * t.y();
-      sum += place.weight * std::pow(1.0 + (a * a + b * b) / exponent, -exponent);
+      const Eigen::Vector2d from_centre = rows * place.u;
+      for (const Eigen::Vector2d& offset : domain_.offsets_px()) {
+        const Eigen::Vector2d t = from_centre - offset;
+        const double a = p[2] * t.x(), b = p[3] * t.x() + p[4] * t.y();
+        sum += place.weight * std::pow(1.0 + (a * a + b * b) / exponent, -exponent);
+      }
     }
-    return sum / static_cast<double>(kPlaces);
+    return sum / static_cast<double>(kPlaces * domain_.offsets_px().size());
   }
 
   std::optional<ColourBalance> balance_;
@@ -227,19 +234,19 @@ Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& normal) {
 }  // namespace
 
 std::optional<FittedHighlight> fit_highlight(const MosaicRadiance& image, const Eigen::Vector2d& start, int reach_px,
-                                             const std::optional<ColourBalance>& balance,
-                                             const std::optional<SphereInView>& sphere) {
+                                             const std::optional<ColourBalance>& balance, const HighlightShape& shape) {
   const bool one_amplitude = balance.has_value() || image.mosaic == Mosaic::Mono;
   const std::optional<ColourBalance> used = image.mosaic == Mosaic::Mono ? ColourBalance{1, 1, 1} : balance;
   const std::vector<Sample> samples = usable_samples(image, start, reach_px);
-  const PeakModel model(samples, used, Domain(sphere));
+  const PeakModel model(samples, used, Domain(shape));
   constexpr std::size_t kLeastSamples = 20;  // about twice the unknowns
   if (model.size() < kLeastSamples) return std::nullopt;
   Parameters p = start_values(samples, start, one_amplitude);
   const auto freedom = static_cast<double>(model.size()) - static_cast<double>(p.size());
   if (!minimise(model, p)) return std::nullopt;
   const Eigen::MatrixXd j = model.jacobian(p);
-  const Eigen::MatrixXd covariance = pseudo_inverse(j.transpose() * j) * std::max(1.0, model.residuals(p).squaredNorm() / freedom);
+  const Eigen::MatrixXd covariance =
+      pseudo_inverse(j.transpose() * j) * std::max(1.0, model.residuals(p).squaredNorm() / freedom);
   FittedHighlight fit;
   fit.pixel = p.head<2>();
   fit.sigma_px = std::sqrt(0.5 * (covariance(0, 0) + covariance(1, 1)));

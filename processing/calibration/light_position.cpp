@@ -90,7 +90,8 @@ ceres::CostFunction* numeric_cost(Residual residual) {
 void add_rings(Adjustment& a, const CameraModel& camera, double radius_m, const std::vector<HighlightPixel>& rings) {
   for (const HighlightPixel& seen : rings) {
     auto* cost = numeric_cost<RingResidual, 5>(RingResidual{&camera, &a.chart, radius_m, seen});
-    a.blocks.push_back({a.problem.AddResidualBlock(cost, new ceres::CauchyLoss(3.0), a.line.data()), -1, seen.sigma_px});
+    a.blocks.push_back(
+        {a.problem.AddResidualBlock(cost, new ceres::CauchyLoss(3.0), a.line.data()), -1, seen.sigma_px});
   }
 }
 
@@ -135,25 +136,42 @@ void measure_residuals(Adjustment& a, LightSolution& solution) {
   solution.sigma_scale = freedom > 0 ? std::max(1.0, std::sqrt(sum_sigma2 / freedom)) : 1.0;
 }
 
-void fill_covariances(Adjustment& a, LightSolution& solution) {
+// One covariance block a measured view, in their order; empty if the problem is too degenerate for one.
+std::vector<Eigen::Matrix3d> light_covariances(Adjustment& a, const LightSolution& solution) {
   std::vector<std::pair<const double*, const double*>> wanted;
   for (std::size_t v = 0; v < a.lights.size(); ++v) {
     if (solution.lights[v].measured) wanted.emplace_back(a.lights[v].data(), a.lights[v].data());
   }
-  if (wanted.empty()) return;
+  if (wanted.empty()) return {};
   ceres::Covariance::Options options;
   options.algorithm_type = ceres::DENSE_SVD;  // some 60 unknowns; tolerates a weakly determined direction
   options.null_space_rank = -1;
   ceres::Covariance covariance(options);
-  if (!covariance.Compute(wanted, &a.problem)) {
-    solution.converged = false;
-    return;
-  }
-  for (std::size_t v = 0; v < a.lights.size(); ++v) {
-    if (!solution.lights[v].measured) continue;
+  if (!covariance.Compute(wanted, &a.problem)) return {};
+  std::vector<Eigen::Matrix3d> blocks;
+  for (const auto& [light, same] : wanted) {
     Eigen::Matrix<double, 3, 3, Eigen::RowMajor> block;
-    covariance.GetCovarianceBlock(a.lights[v].data(), a.lights[v].data(), block.data());
-    solution.lights[v].covariance = block * (solution.sigma_scale * solution.sigma_scale);
+    covariance.GetCovarianceBlock(light, same, block.data());
+    blocks.push_back(block * (solution.sigma_scale * solution.sigma_scale));
+  }
+  return blocks;
+}
+
+void fill_covariances(Adjustment& a, LightSolution& solution) {
+  const std::vector<Eigen::Matrix3d> whole = light_covariances(a, solution);
+  a.problem.SetParameterBlockConstant(a.line.data());
+  const std::vector<Eigen::Matrix3d> own = light_covariances(a, solution);
+  a.problem.SetParameterBlockVariable(a.line.data());
+  std::size_t next = 0;
+  for (MeasuredLight& light : solution.lights) {
+    if (!light.measured) continue;
+    if (next >= whole.size() || next >= own.size()) {  // without an uncertainty there is no measurement
+      light.measured = false;
+      solution.converged = false;
+      continue;
+    }
+    light.covariance = whole[next];
+    light.own_covariance = own[next++];
   }
 }
 
@@ -223,15 +241,24 @@ Eigen::Vector2d highlight_pixel(const CameraModel& camera, const MirrorSphere& s
   return camera.project(mirror_point(sphere, Eigen::Vector3d::Zero(), light));
 }
 
-Eigen::Vector2d ring_highlight_pixel(const CameraModel& camera, const MirrorSphere& sphere, double ring_radius_m) {
+std::vector<Eigen::Vector2d> ring_highlight_pixels(const CameraModel& camera, const MirrorSphere& sphere,
+                                                   double ring_radius_m) {
   // Opposite emitters cancel to first order; eight catch what is left, since the next terms are of fourth order.
   constexpr int kEmitters = 8;
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  std::vector<Eigen::Vector2d> pixels;
   for (int i = 0; i < kEmitters; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / kEmitters;
-    sum += highlight_pixel(camera, sphere, {ring_radius_m * std::cos(angle), ring_radius_m * std::sin(angle), 0.0});
+    pixels.push_back(
+        highlight_pixel(camera, sphere, {ring_radius_m * std::cos(angle), ring_radius_m * std::sin(angle), 0.0}));
   }
-  return sum / kEmitters;
+  return pixels;
+}
+
+Eigen::Vector2d ring_highlight_pixel(const CameraModel& camera, const MirrorSphere& sphere, double ring_radius_m) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  const std::vector<Eigen::Vector2d> pixels = ring_highlight_pixels(camera, sphere, ring_radius_m);
+  for (const Eigen::Vector2d& pixel : pixels) sum += pixel;
+  return sum / static_cast<double>(pixels.size());
 }
 
 LightSolution solve_lights(const CameraModel& camera, const SphereLine& start, double ring_radius_m,

@@ -28,29 +28,35 @@ struct HighlightPixel {
 std::optional<Eigen::Vector3d> nearest_point(const std::vector<Ray>& rays);
 
 // First estimate of one light from its highlights: the nearest point of all mirrored rays, or of a pair of them if that
-// agrees better with the median highlight (so a minority of false ones does no harm). None if fewer than two of them lie on their spheres.
+// agrees better with the median highlight (so a minority of false ones does no harm). None if fewer than two of them
+// lie on their spheres.
 std::optional<Eigen::Vector3d> light_from_highlights(const CameraModel& camera, const SphereLine& line,
                                                      const std::vector<HighlightPixel>& highlights);
 
 // Pixel at which the camera sees `light` mirrored in the sphere.
 Eigen::Vector2d highlight_pixel(const CameraModel& camera, const MirrorSphere& sphere, const Eigen::Vector3d& light);
-// Centroid of the reflection of a ring of the given radius around the lens, in the camera's xy plane.
+// Pixels at which it sees emitters that stand evenly around the lens in the camera's xy plane.
+std::vector<Eigen::Vector2d> ring_highlight_pixels(const CameraModel& camera, const MirrorSphere& sphere,
+                                                   double ring_radius_m);
+// Their centroid: that of the reflection of a ring of the given radius.
 Eigen::Vector2d ring_highlight_pixel(const CameraModel& camera, const MirrorSphere& sphere, double ring_radius_m);
 
 struct MeasuredLight {
   bool measured = false;  // false: fewer than three highlights, position and covariance mean nothing
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // m^2
+  Eigen::Matrix3d own_covariance =
+      Eigen::Matrix3d::Zero();  // the part that other views do not share: the line held fixed
   int highlights = 0;
-  int outliers = 0;         // highlights farther than 5 sigma from the fit
-  double residual_px = 0;   // rms of a coordinate over this view's highlights, outliers left out
+  int outliers = 0;        // highlights farther than 5 sigma from the fit
+  double residual_px = 0;  // rms of a coordinate over this view's highlights, outliers left out
 };
 
 struct LightSolution {
   SphereLine line;
   std::vector<MeasuredLight> lights;  // as the views given
   double residual_px = 0;             // rms over everything, outliers left out
-  double sigma_scale = 1;             // residuals over the highlights' stated sigmas; covariances are scaled by its square
+  double sigma_scale = 1;  // residuals over the highlights' stated sigmas; covariances are scaled by its square
   bool converged = false;
 };
 

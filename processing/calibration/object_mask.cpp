@@ -90,7 +90,8 @@ Split split_modes(const cv::Mat& values, const cv::Mat& where) {
 ObjectMask find_object(const MosaicRadiance& silhouette, const Mesh& mesh, const CameraModel& camera,
                        const Eigen::Isometry3d& camera_from_mesh, int margin_px) {
   const cv::Mat projection = projection_of(mesh, camera, camera_from_mesh);
-  if (cv::countNonZero(projection) == 0) throw BadInput("mesh", "no part of it is in a view's picture", "a mesh in sight");
+  if (cv::countNonZero(projection) == 0)
+    throw BadInput("mesh", "no part of it is in a view's picture", "a mesh in sight");
   cv::Mat allowed, surroundings;
   const auto ellipse = [](int r) { return cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * r + 1, 2 * r + 1}); };
   cv::dilate(projection, allowed, ellipse(margin_px));

@@ -17,8 +17,8 @@ struct ObjectMask {
   double threshold = 0;              // between the modes, in the silhouette's unit
 };
 
-// silhouette: the merged backlight shot. The mesh's projection, widened by margin_px, bounds the object, so that spheres
-// and card, dark too, are no object. Throws BadInput if no part of the mesh projects into the picture.
+// silhouette: the merged backlight shot. The mesh's projection, widened by margin_px, bounds the object, so that
+// spheres and card, dark too, are no object. Throws BadInput if no part of the mesh projects into the picture.
 ObjectMask find_object(const MosaicRadiance& silhouette, const Mesh& mesh, const CameraModel& camera,
                        const Eigen::Isometry3d& camera_from_mesh, int margin_px);
 

@@ -61,8 +61,8 @@ struct Candidate {
   double log_peak = 0;
 };
 
-std::optional<RowHypothesis> hypothesis(const Candidate& first, const Candidate& last, const Candidate& second, int count,
-                                        double tolerance) {
+std::optional<RowHypothesis> hypothesis(const Candidate& first, const Candidate& last, const Candidate& second,
+                                        int count, double tolerance) {
   RowHypothesis row{first.direction, last.direction - first.direction, 0.0};
   const double length2 = row.along.squaredNorm();
   const Eigen::Vector2d to_second = second.direction - first.direction;
@@ -81,8 +81,8 @@ struct Row {
   double cost = 0;
 };
 
-std::optional<Row> collect(const RowHypothesis& row, const std::vector<Candidate>& candidates, int count, double tolerance,
-                           std::size_t first) {
+std::optional<Row> collect(const RowHypothesis& row, const std::vector<Candidate>& candidates, int count,
+                           double tolerance, std::size_t first) {
   Row found;
   constexpr double kBrightnessFactor = 3.0;
   for (int k = 0; k < count; ++k) {
@@ -91,15 +91,16 @@ std::optional<Row> collect(const RowHypothesis& row, const std::vector<Candidate
     std::optional<std::size_t> nearest;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       const double distance = (candidates[i].direction - expected).norm();
-      if (distance < best && std::abs(candidates[i].log_peak - candidates[first].log_peak) < std::log(kBrightnessFactor)) {
+      if (distance < best &&
+          std::abs(candidates[i].log_peak - candidates[first].log_peak) < std::log(kBrightnessFactor)) {
         best = distance;
         nearest = i;
       }
     }
     if (!nearest) return std::nullopt;
     found.members.push_back(*nearest);
-    found.cost += best * best / (tolerance * tolerance) +
-                  std::pow(candidates[*nearest].log_peak - candidates[first].log_peak, 2);
+    found.cost +=
+        best * best / (tolerance * tolerance) + std::pow(candidates[*nearest].log_peak - candidates[first].log_peak, 2);
   }
   std::vector<std::size_t> unique = found.members;
   std::sort(unique.begin(), unique.end());
@@ -119,7 +120,8 @@ std::vector<Blob> compact_blobs(const MosaicRadiance& image, std::size_t most) {
   cv::Mat bright, mask, labels, statistics, centroids;
   const cv::Mat square = cv::getStructuringElement(cv::MORPH_RECT, {kLargestBlobPx + 2, kLargestBlobPx + 2});
   cv::morphologyEx(neutral, bright, cv::MORPH_TOPHAT, square);
-  cv::Mat local_peak;  // a highlight's skirt may touch its neighbour's: count only what exceeds a fifth of the peak near it
+  cv::Mat
+      local_peak;  // a highlight's skirt may touch its neighbour's: count only what exceeds a fifth of the peak near it
   cv::dilate(bright, local_peak, square);
   cv::Mat above_noise = bright > kNoiseSigmas * noise_sigma(image), above_skirt = bright > 0.2 * local_peak;
   cv::bitwise_and(above_noise, above_skirt, mask);
@@ -140,7 +142,8 @@ std::optional<std::vector<Blob>> find_sphere_row(const std::vector<Blob>& blobs,
   constexpr double kTolerancePx = 2.0;  // of a blob's centroid
   const double tolerance = kTolerancePx / camera.focal_x_px;
   std::vector<Candidate> candidates;
-  for (const Blob& blob : blobs) candidates.push_back({camera.unproject(blob.pixel).hnormalized(), std::log(blob.peak)});
+  for (const Blob& blob : blobs)
+    candidates.push_back({camera.unproject(blob.pixel).hnormalized(), std::log(blob.peak)});
   std::optional<Row> best;
   for (std::size_t a = 0; a < candidates.size(); ++a) {
     for (std::size_t b = 0; b < candidates.size(); ++b) {

@@ -23,7 +23,8 @@ std::vector<Blob> compact_blobs(const MosaicRadiance& image, std::size_t most);
 
 // The `count` blobs that can be ring highlights of spheres on a line: in undistorted directions such points lie on a
 // straight line, at places that a projective map of 0, 1, 2, … gives, and are about equally bright, since
-// the flash is about equally far from all. In order, beginning with the leftmost (topmost if upright). None if no such row is found.
+// the flash is about equally far from all. In order, beginning with the leftmost (topmost if upright). None if no such
+// row is found.
 std::optional<std::vector<Blob>> find_sphere_row(const std::vector<Blob>& blobs, const CameraModel& camera, int count);
 
 // The point light's highlight on each sphere of the line, at most one each: the brightest compact thing on its disc.
@@ -31,7 +32,8 @@ std::optional<std::vector<Blob>> find_sphere_row(const std::vector<Blob>& blobs,
 std::vector<std::pair<int, Blob>> find_point_highlights(const std::vector<Blob>& blobs, const CameraModel& camera,
                                                         const SphereLine& line);
 
-// Median over highlights of the lamp's colour balance, each fitted with free amplitudes (ones for mono). None without any.
+// Median over highlights of the lamp's colour balance, each fitted with free amplitudes (ones for mono). None without
+// any.
 std::optional<ColourBalance> colour_balance(const std::vector<FittedHighlight>& free_fits);
 
 }  // namespace lumitexel

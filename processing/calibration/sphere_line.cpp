@@ -43,7 +43,8 @@ SphereLine sphere_line_from_rays(const Rays& rays, double spacing_m, double radi
   if (rays.size() < 3) throw BadInput("sphere line", std::to_string(rays.size()) + " rays", "at least three");
   const Eigen::VectorXd depths = relative_depths(rays);
   if (!depths.allFinite() || depths.minCoeff() <= 0.0) {
-    throw BadInput("sphere line", "rays that no line in front of the camera fits", "rays towards distinct spheres in order");
+    throw BadInput("sphere line", "rays that no line in front of the camera fits",
+                   "rays towards distinct spheres in order");
   }
   // A straight line through the centres by least squares over their index; its slope is one spacing.
   const double n = static_cast<double>(rays.size()), middle = 0.5 * (n - 1.0);

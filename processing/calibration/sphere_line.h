@@ -1,8 +1,8 @@
 // The line of spheres from the viewing rays towards their centres (the paper's section on the light source's
 // position, eq. 1 to 5).
 //
-// Centres c_i = d_i * lambda_i along unit rays d_i from the camera obey c_(i-1) - 2 c_i + c_(i+1) = 0. Crossing that with one of
-// the three rays removes its depth and leaves a linear relation between the other two:
+// Centres c_i = d_i * lambda_i along unit rays d_i from the camera obey c_(i-1) - 2 c_i + c_(i+1) = 0. Crossing that
+// with one of the three rays removes its depth and leaves a linear relation between the other two:
 //   x d_i:      lambda_(i-1) (d_(i-1) x d_i)     + lambda_(i+1) (d_(i+1) x d_i)     = 0
 //   x d_(i-1):  lambda_(i+1) (d_(i+1) x d_(i-1)) - 2 lambda_i   (d_i x d_(i-1))     = 0
 // All these cross products point along the normal of the plane that holds camera and line, so one component tells

@@ -14,8 +14,8 @@ struct SurfaceAngle {
 
 SurfaceAngle surface_angle(double distance, double radius, double turned) {
   const double across = distance * std::sin(turned), along = distance * std::cos(turned) - radius;
-  return {std::atan2(across, along), (distance * distance - distance * radius * std::cos(turned)) /
-                                         (across * across + along * along)};
+  return {std::atan2(across, along),
+          (distance * distance - distance * radius * std::cos(turned)) / (across * across + along * along)};
 }
 
 }  // namespace

@@ -14,10 +14,10 @@ struct SphereShots {
   FrameRecord ring, point;
 };
 
-// One entry a view. The spheres stand still, so their ring highlights are pooled over all views (median; a view in which
-// the row is not found or stands elsewhere does not count). Throws Error if no view shows the row of spheres.
-LightSolution measure_lights(const CapturedFrames& frames, const std::vector<SphereShots>& views, const DarkLibrary& darks,
-                             const LinearSensor& sensor, const CameraModel& camera, const RigDescription& rig,
-                             Progress& progress);
+// One entry a view. The spheres stand still, so their ring highlights are pooled over all views (median; a view in
+// which the row is not found or stands elsewhere does not count). Throws Error if no view shows the row of spheres.
+LightSolution measure_lights(const CapturedFrames& frames, const std::vector<SphereShots>& views,
+                             const DarkLibrary& darks, const LinearSensor& sensor, const CameraModel& camera,
+                             const RigDescription& rig, Progress& progress);
 
 }  // namespace lumitexel

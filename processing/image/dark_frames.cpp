@@ -66,7 +66,8 @@ double pooled_variance(const std::vector<Frame>& frames, const MasterDark& dark,
       sum += difference * difference;
     }
   }
-  return count == 0 ? sensor.variance_dn2(0.0) : sum / (static_cast<double>(count) * static_cast<double>(frames.size() - 1));
+  return count == 0 ? sensor.variance_dn2(0.0)
+                    : sum / (static_cast<double>(count) * static_cast<double>(frames.size() - 1));
 }
 
 }  // namespace

@@ -12,10 +12,10 @@ namespace lumitexel {
 struct MasterDark {
   CameraSettings settings;
   int width_px = 0, height_px = 0, repetitions = 0;
-  std::vector<float> mean_dn;      // black level and dark current, width_px * height_px
-  double pixel_variance_dn2 = 0;   // of one sample of a healthy pixel, pooled over all of them: a few repetitions say
-                                   // too little about a single one. From the noise model if there is one repetition.
-  std::vector<std::uint8_t> hot;   // 1: the pixel's mean lies 10 robust standard deviations from the median
+  std::vector<float> mean_dn;     // black level and dark current, width_px * height_px
+  double pixel_variance_dn2 = 0;  // of one sample of a healthy pixel, pooled over all of them: a few repetitions say
+                                  // too little about a single one. From the noise model if there is one repetition.
+  std::vector<std::uint8_t> hot;  // 1: the pixel's mean lies 10 robust standard deviations from the median
   std::int64_t hot_count = 0;
 
   // Variance of mean_dn at a pixel: pooled, plus the shot noise of dark current beyond the typical.

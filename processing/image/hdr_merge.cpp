@@ -78,8 +78,8 @@ std::vector<Exposure> matched(const std::vector<Frame>& frames, const DarkLibrar
         frame.mosaic != frames[0].mosaic) {
       throw BadInput("bracket", "frames of different size or mosaic", "exposures by one camera");
     }
-    exposures.push_back({&frame, &darks.matching(frame.reported, frame.width_px, frame.height_px),
-                         frame.reported.exposure_s});
+    exposures.push_back(
+        {&frame, &darks.matching(frame.reported, frame.width_px, frame.height_px), frame.reported.exposure_s});
   }
   std::stable_sort(exposures.begin(), exposures.end(),
                    [](const Exposure& a, const Exposure& b) { return a.time_s < b.time_s; });

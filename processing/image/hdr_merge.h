@@ -21,8 +21,8 @@ namespace lumitexel {
 struct MosaicRadiance {
   int width = 0, height = 0;
   Mosaic mosaic = Mosaic::Mono;
-  std::vector<float> value;     // DN per second
-  std::vector<float> variance;  // of value
+  std::vector<float> value;         // DN per second
+  std::vector<float> variance;      // of value
   std::vector<std::uint8_t> flags;  // PixelFlag bits: saturated, dark, defective
 
   std::size_t index(int x, int y) const {

@@ -27,11 +27,16 @@ LinearSensor linear_sensor(const CameraDescription& camera, double gain_db) {
 int mosaic_channel(Mosaic mosaic, int x, int y) {
   const int place = (y & 1) * 2 + (x & 1);  // (0,0) (1,0) / (0,1) (1,1)
   switch (mosaic) {
-    case Mosaic::Mono: return 0;
-    case Mosaic::Rggb: return place == 0 ? 0 : place == 3 ? 2 : 1;
-    case Mosaic::Bggr: return place == 0 ? 2 : place == 3 ? 0 : 1;
-    case Mosaic::Grbg: return place == 1 ? 0 : place == 2 ? 2 : 1;
-    case Mosaic::Gbrg: return place == 2 ? 0 : place == 1 ? 2 : 1;
+    case Mosaic::Mono:
+      return 0;
+    case Mosaic::Rggb:
+      return place == 0 ? 0 : place == 3 ? 2 : 1;
+    case Mosaic::Bggr:
+      return place == 0 ? 2 : place == 3 ? 0 : 1;
+    case Mosaic::Grbg:
+      return place == 1 ? 0 : place == 2 ? 2 : 1;
+    case Mosaic::Gbrg:
+      return place == 2 ? 0 : place == 1 ? 2 : 1;
   }
   return 0;
 }

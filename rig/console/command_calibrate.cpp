@@ -21,15 +21,16 @@ json known_or_null(double sigma) { return sigma > 0.0 ? json(sigma) : json(nullp
 json lights_json(const CalibrationSummary& summary) {
   json lights = json::array();
   for (const LightSummary& light : summary.lights) {
-    lights.push_back({{"view", light.view},
-                      {"position_m", vector_json(light.position_in_world)},
-                      {"sigma_m", known_or_null(light.sigma_m)},
-                      {"from_spheres", light.from_spheres},
-                      {"highlights", light.highlights},
-                      {"outliers", light.outliers},
-                      {"residual_px", light.residual_px},
-                      {"spheres_alone_m", light.highlights > 0 ? vector_json(light.spheres_alone_in_world) : json(nullptr)},
-                      {"spheres_alone_sigma_m", known_or_null(light.spheres_alone_sigma_m)}});
+    lights.push_back(
+        {{"view", light.view},
+         {"position_m", vector_json(light.position_in_world)},
+         {"sigma_m", known_or_null(light.sigma_m)},
+         {"from_spheres", light.from_spheres},
+         {"highlights", light.highlights},
+         {"outliers", light.outliers},
+         {"residual_px", light.residual_px},
+         {"spheres_alone_m", light.highlights > 0 ? vector_json(light.spheres_alone_in_world) : json(nullptr)},
+         {"spheres_alone_sigma_m", known_or_null(light.spheres_alone_sigma_m)}});
   }
   return lights;
 }
@@ -41,7 +42,10 @@ json poses_json(const CalibratedSession& session) {
     const auto& m = view.camera_from_world.matrix();
     for (int r = 0; r < 4; ++r) rows.push_back({m(r, 0), m(r, 1), m(r, 2), m(r, 3)});
     // Poses come from the rig's geometry or the import as they are: nothing measures their uncertainty yet.
-    poses.push_back({{"view", view.name}, {"camera_from_world", rows}, {"sigma_m", nullptr}, {"sigma_deg", nullptr},
+    poses.push_back({{"view", view.name},
+                     {"camera_from_world", rows},
+                     {"sigma_m", nullptr},
+                     {"sigma_deg", nullptr},
                      {"silhouette_px", nullptr}});
   }
   return poses;
@@ -59,7 +63,8 @@ struct ErrorFigures {
 };
 
 template <typename Position>
-std::optional<ErrorFigures> light_error(const json& truth, const CalibrationSummary& summary, const Position& position) {
+std::optional<ErrorFigures> light_error(const json& truth, const CalibrationSummary& summary,
+                                        const Position& position) {
   std::map<std::string, Eigen::Vector3d> true_positions;
   for (const json& light : truth.at("lights")) {
     const auto p = light.at("position_m").get<std::array<double, 3>>();
@@ -77,14 +82,16 @@ std::optional<ErrorFigures> light_error(const json& truth, const CalibrationSumm
   return ErrorFigures{errors_mm[errors_mm.size() / 2], errors_mm.back()};
 }
 
-void add_truth(const std::filesystem::path& directory, const CalibrationSummary& summary, json& result, std::ostream& text) {
+void add_truth(const std::filesystem::path& directory, const CalibrationSummary& summary, json& result,
+               std::ostream& text) {
   const std::filesystem::path path = directory / "truth" / "calibration.json";
   if (!std::filesystem::exists(path)) return;
   std::ifstream file(path);
   try {
     const json truth = json::parse(file);
     const auto final_error = light_error(truth, summary, [](const LightSummary& l) { return l.position_in_world; });
-    const auto spheres_error = light_error(truth, summary, [](const LightSummary& l) { return l.spheres_alone_in_world; });
+    const auto spheres_error =
+        light_error(truth, summary, [](const LightSummary& l) { return l.spheres_alone_in_world; });
     if (!final_error || !spheres_error) return;
     result["light_error_mm"] = {{"median", final_error->median_mm}, {"max", final_error->max_mm}};
     result["light_error_spheres_alone_mm"] = {{"median", spheres_error->median_mm}, {"max", spheres_error->max_mm}};
@@ -119,8 +126,9 @@ CommandResult run(const std::string& directory, CommandContext& context) {
   result.json = {{"lights", lights_json(summary)},
                  {"poses", poses_json(session)},
                  {"camera", session.views.empty() ? json(nullptr) : camera_json(session.views[0].camera)},
-                 {"scale", {{"value", captured ? json(summary.intensity) : json(nullptr)},
-                            {"sigma", known_or_null(session.gray_card_scale_sigma)}}},
+                 {"scale",
+                  {{"value", captured ? json(summary.intensity) : json(nullptr)},
+                   {"sigma", known_or_null(session.gray_card_scale_sigma)}}},
                  {"sphere_residual_px", captured ? json(summary.sphere_residual_px) : json(nullptr)},
                  {"arm_residual_m", captured ? json(summary.arm_residual_m) : json(nullptr)},
                  {"arm_scatter_m", captured ? json(summary.arm_scatter_m) : json(nullptr)},

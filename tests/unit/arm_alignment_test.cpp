@@ -23,7 +23,8 @@ Eigen::Vector3d true_position(double azimuth_deg, double elevation_deg) {
   const double a = azimuth_deg * kDegree, e = (elevation_deg + 0.6) * kDegree;
   const Eigen::Vector3d direction(std::cos(a) * std::cos(e), std::sin(a) * std::cos(e), std::sin(e));
   const Eigen::Vector3d axis = Eigen::Vector3d(0.3, -0.5, 0.8).normalized();
-  return nominal().pivot_in_rig + Eigen::Vector3d(0.006, -0.004, 0.003) + 1.005 * (Eigen::AngleAxisd(0.008, axis) * direction);
+  return nominal().pivot_in_rig + Eigen::Vector3d(0.006, -0.004, 0.003) +
+         1.005 * (Eigen::AngleAxisd(0.008, axis) * direction);
 }
 
 // Good across, poor along the line to the spheres, as sphere shots are.
@@ -82,7 +83,9 @@ TEST(ArmAlignment, AMismeasuredViewIsToldApart) {
   for (std::size_t i = 0; i < measured.size(); ++i) EXPECT_EQ(arm.is_outlier(measured[i]), i == 7) << i;
   const ArmSample& bad = measured[7];
   EXPECT_LT((arm.predict(bad.azimuth_deg, bad.elevation_deg).position_in_rig -
-             true_position(bad.azimuth_deg, bad.elevation_deg)).norm(), 3e-3);
+             true_position(bad.azimuth_deg, bad.elevation_deg))
+                .norm(),
+            3e-3);
 }
 
 TEST(ArmAlignment, WithoutSamplesItIsTheNominalArm) {

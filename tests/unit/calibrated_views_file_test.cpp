@@ -19,7 +19,8 @@ CalibratedSession one_view(const std::filesystem::path& folder) {
   view.name = "fit_000";
   view.heldout = true;
   view.camera = {1024, 768, 2950.1, 2950.2, 516.3, 379.8, -0.08, 0.15, 0.0004, -0.0003};
-  view.camera_from_world = Eigen::Translation3d(0.1, 0.2, 0.3) * Eigen::AngleAxisd(1.0, Eigen::Vector3d(1, 2, 3).normalized());
+  view.camera_from_world =
+      Eigen::Translation3d(0.1, 0.2, 0.3) * Eigen::AngleAxisd(1.0, Eigen::Vector3d(1, 2, 3).normalized());
   view.light = {Light::Type::Point, {0.1, 1.0 / 3.0, 0.7}, {1e5, 2e5, 3e5}, 0.0007};
   view.photograph = folder / "fit_000.exr";
   session.views.push_back(view);

@@ -27,7 +27,8 @@ TEST_P(EveryMosaic, IsExactOnARampInTheInterior) {
   const RadianceImage image = demosaic(ramp(GetParam()));
   for (int y = 1; y < 9; ++y) {
     for (int x = 1; x < 11; ++x) {
-      for (int c = 0; c < 3; ++c) EXPECT_NEAR(image.radiance.at(x, y, c), plane(c, x, y), 1e-5) << x << ' ' << y << ' ' << c;
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(image.radiance.at(x, y, c), plane(c, x, y), 1e-5) << x << ' ' << y << ' ' << c;
     }
   }
 }

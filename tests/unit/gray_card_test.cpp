@@ -53,7 +53,8 @@ struct Bench {
 
 TEST(GrayCard, GivesBackTheIntensityExactlyWithoutNoise) {
   const Bench bench;
-  const auto measured = measure_gray_card(bench.picture({2e5, 3e5, 1e5}, 0.0), bench.camera, bench.camera_from_rig, bench.card, bench.light_in_rig);
+  const auto measured = measure_gray_card(bench.picture({2e5, 3e5, 1e5}, 0.0), bench.camera, bench.camera_from_rig,
+                                          bench.card, bench.light_in_rig);
   ASSERT_EQ(measured.intensity.size(), 3u);
   EXPECT_NEAR(measured.intensity[0] / 2e5, 1.0, 1e-6);  // floats
   EXPECT_NEAR(measured.intensity[1] / 3e5, 1.0, 1e-6);
@@ -67,7 +68,8 @@ TEST(GrayCard, StaysWithinItsSigmaUnderNoiseAndADirtSpot) {
   MosaicRadiance image = bench.picture({2e5, 3e5, 1e5}, 0.02);
   const Eigen::Vector2d centre = bench.camera.project(bench.card.centre_in_rig);
   for (int y = 0; y < 6; ++y) {
-    for (int x = 0; x < 6; ++x) image.value[image.index(static_cast<int>(centre.x()) + x, static_cast<int>(centre.y()) + y)] *= 0.3f;
+    for (int x = 0; x < 6; ++x)
+      image.value[image.index(static_cast<int>(centre.x()) + x, static_cast<int>(centre.y()) + y)] *= 0.3f;
   }
   const auto measured = measure_gray_card(image, bench.camera, bench.camera_from_rig, bench.card, bench.light_in_rig);
   const std::array<double, 3> truth{2e5, 3e5, 1e5};

@@ -76,8 +76,9 @@ TEST(MasterDark, FindsExactlyTheHotPixelsAndTheReadNoise) {
 TEST(MasterDark, RefusesMixedFramesAndOtherExposures) {
   TestCamera camera(test_sensor(), 8, 8, 1);
   EXPECT_THROW(make_master_dark({}, test_sensor()), BadInput);
-  EXPECT_THROW(make_master_dark({camera.expose(0.1, kNothing, kNothing), camera.expose(0.2, kNothing, kNothing)}, test_sensor()),
-               BadInput);
+  EXPECT_THROW(
+      make_master_dark({camera.expose(0.1, kNothing, kNothing), camera.expose(0.2, kNothing, kNothing)}, test_sensor()),
+      BadInput);
   const DarkLibrary library = darks_for(camera, {0.1}, 2);
   EXPECT_NO_THROW(library.matching({0.1, 0.0}, 8, 8));
   EXPECT_THROW(library.matching({0.100001, 0.0}, 8, 8), BadInput);
@@ -93,7 +94,9 @@ TEST(HdrMerge, IsUnbiasedAndKnowsItsVariance) {
     TestCamera camera(test_sensor(), kWidth, kHeight, 42);
     const DarkLibrary darks = darks_for(camera, exposures, 4);
     std::vector<Frame> bracket;
-    for (const double exposure : exposures) bracket.push_back(camera.expose(exposure, [&](int) { return rate; }, kNothing));
+    for (const double exposure : exposures)
+      bracket.push_back(camera.expose(
+          exposure, [&](int) { return rate; }, kNothing));
     const MosaicRadiance merged = merge_bracket(bracket, darks, test_sensor());
     double sum = 0.0, chi_square = 0.0, variance = 0.0;
     constexpr double kPixels = kWidth * kHeight;
@@ -116,7 +119,8 @@ TEST(HdrMerge, UsesTheLongExposureWhereItCan) {
   const auto rate = [](int) { return 1000.0; };
   const MosaicRadiance both =
       merge_bracket({camera.expose(0.64, rate, kNothing), camera.expose(0.01, rate, kNothing)}, darks, test_sensor());
-  const double ideal = (1000.0 * 0.64 / 1.2 + 9.0 * 1.25) / (0.64 * 0.64);  // shot and read noise and a quarter of it again
+  const double ideal =
+      (1000.0 * 0.64 / 1.2 + 9.0 * 1.25) / (0.64 * 0.64);  // shot and read noise and a quarter of it again
   EXPECT_LT(both.variance[0], 1.1 * ideal);
 }
 
@@ -126,7 +130,8 @@ TEST(HdrMerge, FlagsSaturatedDarkAndDefectivePixels) {
   const auto hot = [](int i) { return i == 3 ? 3000.0 : 0.0; };
   DarkLibrary darks;
   for (const double exposure : exposures) {
-    darks.add(make_master_dark({camera.expose(exposure, kNothing, hot), camera.expose(exposure, kNothing, hot)}, test_sensor()));
+    darks.add(make_master_dark({camera.expose(exposure, kNothing, hot), camera.expose(exposure, kNothing, hot)},
+                               test_sensor()));
   }
   const auto rate = [](int i) { return i == 0 ? 1e7 : i == 1 ? 0.0 : i == 2 ? 1e6 : 1e4; };
   const MosaicRadiance merged =

@@ -25,9 +25,10 @@ SphereLine test_line(const Eigen::Vector3d& direction = {0.98, 0.03, 0.2}) {
   return line;
 }
 
-// Fermat: light takes the shortest way over the sphere's facing side. Found by shrinking a pattern search over the sphere,
-// which shares nothing with the code under test.
-Eigen::Vector3d shortest_way_point(const MirrorSphere& sphere, const Eigen::Vector3d& eye, const Eigen::Vector3d& light) {
+// Fermat: light takes the shortest way over the sphere's facing side. Found by shrinking a pattern search over the
+// sphere, which shares nothing with the code under test.
+Eigen::Vector3d shortest_way_point(const MirrorSphere& sphere, const Eigen::Vector3d& eye,
+                                   const Eigen::Vector3d& light) {
   Eigen::Vector3d normal = ((eye - sphere.centre).normalized() + (light - sphere.centre).normalized()).normalized();
   const auto length = [&](const Eigen::Vector3d& n) {
     const Eigen::Vector3d x = sphere.centre + sphere.radius_m * n;
@@ -85,9 +86,9 @@ TEST_P(LineDirections, AreRecoveredExactlyFromExactRays) {
 }
 
 INSTANTIATE_TEST_SUITE_P(SphereLine, LineDirections,
-                         testing::Values(Eigen::Vector3d(1, 0, 0),         // parallel to the image and its rows
-                                         Eigen::Vector3d(0, 1, 0),         // and its columns
-                                         Eigen::Vector3d(1, 1, 0),         // parallel to the image, oblique
+                         testing::Values(Eigen::Vector3d(1, 0, 0),  // parallel to the image and its rows
+                                         Eigen::Vector3d(0, 1, 0),  // and its columns
+                                         Eigen::Vector3d(1, 1, 0),  // parallel to the image, oblique
                                          Eigen::Vector3d(0.98, 0.03, 0.2),
                                          Eigen::Vector3d(0.1, 0.3, -1)));  // almost in depth
 
@@ -180,8 +181,8 @@ TEST(LightPosition, ErrorsAreWhatTheCovarianceSays) {
       ++count;
     }
   }
-  // Expectation 3; the sum over 240 lights (correlated in fours through the line) deviates by some 3 * 8 %; the scale of
-  // at least one and the heavy-tailed loss shift it by a little. Wrong covariances are wrong by factors.
+  // Expectation 3; the sum over 240 lights (correlated in fours through the line) deviates by some 3 * 8 %; the scale
+  // of at least one and the heavy-tailed loss shift it by a little. Wrong covariances are wrong by factors.
   EXPECT_NEAR(mahalanobis2 / count, 3.0, 1.0);
 }
 

@@ -15,8 +15,10 @@ struct Spot {
   double amplitude, width_px;
 };
 
-// Spots of Gaussian profile (not the fitted one) on a mosaic, integrated over the pixels by their exact integral, with noise.
-MosaicRadiance picture(Mosaic mosaic, const std::vector<Spot>& spots, std::uint64_t seed, int width = 400, int height = 300) {
+// Spots of Gaussian profile (not the fitted one) on a mosaic, integrated over the pixels by their exact integral, with
+// noise.
+MosaicRadiance picture(Mosaic mosaic, const std::vector<Spot>& spots, std::uint64_t seed, int width = 400,
+                       int height = 300) {
   MosaicRadiance m;
   m.width = width;
   m.height = height;
@@ -29,11 +31,13 @@ MosaicRadiance picture(Mosaic mosaic, const std::vector<Spot>& spots, std::uint6
   };
   for (const Spot& spot : spots) {
     const double flux = spot.amplitude * 2.0 * M_PI * spot.width_px * spot.width_px;
-    for (int y = std::max(0, static_cast<int>(spot.pixel.y()) - 20); y < std::min(height, static_cast<int>(spot.pixel.y()) + 20); ++y) {
-      for (int x = std::max(0, static_cast<int>(spot.pixel.x()) - 20); x < std::min(width, static_cast<int>(spot.pixel.x()) + 20); ++x) {
+    for (int y = std::max(0, static_cast<int>(spot.pixel.y()) - 20);
+         y < std::min(height, static_cast<int>(spot.pixel.y()) + 20); ++y) {
+      for (int x = std::max(0, static_cast<int>(spot.pixel.x()) - 20);
+           x < std::min(width, static_cast<int>(spot.pixel.x()) + 20); ++x) {
         const double gain = mosaic == Mosaic::Mono ? 1.0 : kBalance[mosaic_channel(mosaic, x, y)];
-        m.value[m.index(x, y)] += static_cast<float>(
-            gain * flux * part(x, spot.pixel.x(), spot.width_px) * part(y, spot.pixel.y(), spot.width_px));
+        m.value[m.index(x, y)] += static_cast<float>(gain * flux * part(x, spot.pixel.x(), spot.width_px) *
+                                                     part(y, spot.pixel.y(), spot.width_px));
       }
     }
   }
@@ -69,7 +73,8 @@ TEST(HighlightFit, FindsTheCentreToHundredthsOfAPixel) {
 }
 
 TEST(HighlightFit, MeasuresTheColourBalance) {
-  const auto fit = fit_highlight(picture(Mosaic::Rggb, {{{20.3, 19.6}, 8000.0, 1.3}}, 1, 40, 40), {20, 20}, 8, std::nullopt);
+  const auto fit =
+      fit_highlight(picture(Mosaic::Rggb, {{{20.3, 19.6}, 8000.0, 1.3}}, 1, 40, 40), {20, 20}, 8, std::nullopt);
   ASSERT_TRUE(fit);
   EXPECT_NEAR(fit->balance[0], 0.6, 0.03);
   EXPECT_NEAR(fit->balance[2], 0.8, 0.03);
@@ -108,8 +113,8 @@ SphereLine line() {
   return l;
 }
 
-// A rough mirror sphere under a light: D of the true half vector in every place of every pixel, Gaussian in its tangent (not the
-// fitted profile), over the microfacet model's cosine. No noise: what is left is the model's own error.
+// A rough mirror sphere under a light: D of the true half vector in every place of every pixel, Gaussian in its tangent
+// (not the fitted profile), over the microfacet model's cosine. No noise: what is left is the model's own error.
 MosaicRadiance rough_sphere(const MirrorSphere& sphere, const CameraModel& seen_by, const Eigen::Vector3d& light) {
   MosaicRadiance m;
   m.width = seen_by.width_px;
@@ -143,7 +148,7 @@ TEST(HighlightFit, OnAKnownSphereFollowsTheMirrorPoint) {
   const MosaicRadiance image = rough_sphere(sphere, seen_by, light);
   const Eigen::Vector2d truth = highlight_pixel(seen_by, sphere, light);
   const auto plain = fit_highlight(image, truth, 8, std::nullopt);
-  const auto on_sphere = fit_highlight(image, truth, 8, std::nullopt, SphereInView{seen_by, sphere});
+  const auto on_sphere = fit_highlight(image, truth, 8, std::nullopt, {SphereInView{seen_by, sphere}, {}});
   ASSERT_TRUE(plain && on_sphere);
   EXPECT_GT((plain->pixel - truth).norm(), 0.004);  // the inward pull that the picture's plane cannot know
   EXPECT_LT((on_sphere->pixel - truth).norm(), 0.002);
@@ -160,10 +165,12 @@ std::vector<Spot> row_and_sparkles(std::uint64_t seed) {
 
 TEST(SphereRow, IsFoundAmongTheObjectsSparkles) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    const auto row = find_sphere_row(compact_blobs(picture(Mosaic::Rggb, row_and_sparkles(seed), seed), 80), camera(), 6);
+    const auto row =
+        find_sphere_row(compact_blobs(picture(Mosaic::Rggb, row_and_sparkles(seed), seed), 80), camera(), 6);
     ASSERT_TRUE(row) << seed;
     for (int k = 0; k < 6; ++k) {
-      EXPECT_LT(((*row)[static_cast<std::size_t>(k)].pixel - camera().project(line().sphere(k).centre)).norm(), 1.0) << seed << ' ' << k;
+      EXPECT_LT(((*row)[static_cast<std::size_t>(k)].pixel - camera().project(line().sphere(k).centre)).norm(), 1.0)
+          << seed << ' ' << k;
     }
   }
 }
@@ -175,7 +182,8 @@ TEST(SphereRow, IsNotInventedWhereASphereIsMissing) {
 }
 
 TEST(CompactBlobs, LeaveBroadThingsOut) {
-  const auto blobs = compact_blobs(picture(Mosaic::Mono, {{{100, 100}, 5000.0, 1.2}, {{250, 150}, 5000.0, 15.0}}, 1), 80);
+  const auto blobs =
+      compact_blobs(picture(Mosaic::Mono, {{{100, 100}, 5000.0, 1.2}, {{250, 150}, 5000.0, 15.0}}, 1), 80);
   ASSERT_EQ(blobs.size(), 1u);
   EXPECT_LT((blobs[0].pixel - Eigen::Vector2d(100, 100)).norm(), 0.5);
 }
