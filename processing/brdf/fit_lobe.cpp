@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "processing/brdf/lobe_need.h"
 #include "processing/brdf/lobe_starts.h"
 
 namespace lumitexel {
@@ -235,47 +236,9 @@ Eigen::MatrixXd covariance_of(const NormalEquations& equations, const std::vecto
   return root * inverse.asDiagonal() * root.transpose();
 }
 
-// The best diffuse BRDF under the same weights as the lobe's.
-LafortuneBrdf diffuse_alone(std::span<const Observation* const> samples, const ErrorModel& error, const LafortuneBrdf& with_lobe) {
-  LafortuneBrdf matte;
-  matte.channels = with_lobe.channels;
-  for (int c = 0; c < matte.channels; ++c) {
-    const auto channel = static_cast<std::size_t>(c);
-    double xr = 0.0, xx = 0.0;
-    for (const Observation* sample : samples) {
-      const double w = 1.0 / error.variance(predicted_reflectance(with_lobe, c, sample->geometry),
-                                            static_cast<double>(sample->variance[channel]));
-      xr += w * sample->geometry.cos_i * static_cast<double>(sample->reflectance[channel]);
-      xx += w * sample->geometry.cos_i * sample->geometry.cos_i;
-    }
-    matte.diffuse[channel] = xx > 0.0 ? std::max(0.0, xr / xx) : 0.0;
-  }
-  return matte;
-}
-
-// A matte surface needs no lobe: it stays only if the Bayesian information criterion for residuals of unknown variance,
-// n ln(cost) + k ln(n), is lower with it. Channels are not counted as separate samples, since their errors go together.
-void drop_needless_lobe(std::span<const Observation* const> samples, const ErrorModel& error, const LobeParameters& layout,
-                        LobeFit& fit) {
-  const LafortuneBrdf matte = diffuse_alone(samples, error, fit.brdf);
-  double with_lobe = 0.0, without = 0.0;
-  for (const Observation* sample : samples) {
-    for (int c = 0; c < layout.channels; ++c) {
-      const auto channel = static_cast<std::size_t>(c);
-      const double measured = static_cast<double>(sample->reflectance[channel]);
-      const double predicted = predicted_reflectance(fit.brdf, c, sample->geometry);
-      const double matte_predicted = predicted_reflectance(matte, c, sample->geometry);
-      const double variance = error.variance(predicted, static_cast<double>(sample->variance[channel]));
-      with_lobe += (predicted - measured) * (predicted - measured) / variance;
-      without += (matte_predicted - measured) * (matte_predicted - measured) / variance;
-    }
-  }
-  const auto count = static_cast<double>(samples.size());
-  const double parameters = layout.size() - layout.channels;
-  fit.has_lobe = with_lobe > 0.0 && count * std::log(without / with_lobe) > parameters * std::log(count);
-  if (fit.has_lobe) return;
-  fit.brdf.diffuse = matte.diffuse;
-  for (auto& lobe : fit.brdf.lobes[0]) lobe = LafortuneLobe{kMinLogPeak};
+void switch_lobe_off(const LafortuneBrdf& matte, LafortuneBrdf& brdf) {
+  brdf.diffuse = matte.diffuse;
+  for (auto& lobe : brdf.lobes[0]) lobe = LafortuneLobe{kMinLogPeak};
 }
 
 }  // namespace
@@ -340,7 +303,9 @@ LobeFit fit_one_lobe(std::span<const Observation* const> samples, int channels, 
   fit.covariance = spread * covariance_of(equations, held_at_bound(layout, values, equations.gradient), fit.rank_deficient);
   layout.values = values;
   fit.brdf = layout.brdf();
-  drop_needless_lobe(samples, options.error, layout, fit);
+  const LafortuneBrdf matte = diffuse_alone(samples, options.error, fit.brdf);
+  fit.has_lobe = lobe_is_needed(samples, options.error, fit.brdf, matte, layout.size() - layout.channels);
+  if (!fit.has_lobe) switch_lobe_off(matte, fit.brdf);
   return fit;
 }
 

@@ -1,0 +1,69 @@
+#include "processing/model/fit_model.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/unit/sphere_session.h"
+
+namespace lumitexel {
+namespace {
+
+FittedModel fit_sphere(int materials, const TemporaryFolder& folder) {
+  const CalibratedSession session = sphere_session(
+      {view_of_origin("a", {0.5, 0, 0}, {0.6, 0.4, 0.3}), view_of_origin("b", {0.45, 0.2, 0.1}, {0.6, -0.4, 0.3}),
+       view_of_origin("c", {0.45, -0.2, 0.1}, {0.7, 0.1, -0.3}), view_of_origin("d", {0.4, 0.1, 0.3}, {0.7, 0.1, 0.5})},
+      folder);
+  FitOptions options = FitOptions::preset("draft");
+  options.materials = materials;
+  NoProgress progress;
+  return fit_model(session, options, {}, progress);
+}
+
+TEST(FitModel, AMatteSphereHasOneDiffuseMaterialOfItsAlbedo) {
+  const TemporaryFolder folder;
+  const FittedModel fitted = fit_sphere(1, folder);
+  ASSERT_EQ(fitted.model.materials.size(), 1u);
+  // Half a percent: bilinear sampling of curved shading; there is no noise.
+  EXPECT_NEAR(fitted.model.materials[0].brdf.diffuse[0], kSphereAlbedo / M_PI, 0.005 * kSphereAlbedo / M_PI);
+  EXPECT_LT(fitted.summary.projection.rms, 0.005);
+  // 45 degrees on one side, where no lobe reaches.
+  const LobeGeometry geometry{1.0, std::sqrt(0.5), std::sqrt(0.5)};
+  for (std::size_t texel = 0; texel < fitted.model.material.size(); ++texel) {
+    if (fitted.model.samples.data[texel] < 1.0f) continue;
+    const int x = static_cast<int>(texel) % fitted.model.width, y = static_cast<int>(texel) / fitted.model.width;
+    ASSERT_NEAR(evaluate_texel(fitted.model, FitStage::Projection, x, y, 0, geometry), kSphereAlbedo / M_PI, 0.02);
+  }
+}
+
+TEST(FitModel, ProvenanceSaysWhatWasDone) {
+  const TemporaryFolder folder;
+  const FittedModel fitted = fit_sphere(2, folder);
+  const auto provenance = nlohmann::json::parse(fitted.model.provenance_json);
+  EXPECT_EQ(provenance.at("lumitexels"), fitted.summary.lumitexels);
+  EXPECT_EQ(provenance.at("samples"), fitted.summary.samples);
+  EXPECT_EQ(provenance.at("options").at("quality"), "draft");
+  std::vector<std::string> names;
+  for (const auto& stage : provenance.at("stages")) {
+    names.push_back(stage.at("name"));
+    EXPECT_GT(stage.at("peak_bytes").get<double>(), 0.0);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"atlas", "lumitexels", "materials", "projection", "model"}));
+}
+
+TEST(FitModel, EveryTexelThatATriangleCanShowHasAMaterial) {
+  const TemporaryFolder folder;
+  const FittedModel fitted = fit_sphere(1, folder);
+  const Model& model = fitted.model;
+  for (const auto& triangle : model.mesh.triangles) {
+    Eigen::Vector2d uv = Eigen::Vector2d::Zero();
+    for (const std::uint32_t vertex : triangle) uv += model.mesh.texcoords[vertex] / 3.0;
+    const int x = static_cast<int>(uv.x() * model.width), y = static_cast<int>((1.0 - uv.y()) * model.height);
+    EXPECT_NE(model.material[static_cast<std::size_t>(y) * static_cast<std::size_t>(model.width) + static_cast<std::size_t>(x)],
+              Model::kNoMaterial);
+  }
+}
+
+}  // namespace
+}  // namespace lumitexel
