@@ -259,13 +259,9 @@ FrameRecord SessionStore::commit_frame(const NewFrame& frame, std::string_view b
   FrameRecord record{frame, 0, sha256_hex(bytes), static_cast<std::int64_t>(bytes.size())};
   const fs::path file = frame_path(record);
   write_durably(file, bytes);
-  try {
-    journal_->insert_frame(record);
-  } catch (const Error&) {
-    std::error_code ignored;  // the next opening for writing removes it as well
-    fs::remove(file, ignored);
-    throw;
-  }
+  // If this throws the file stays: a commit whose sync failed may yet be found in the journal after a crash. If it is not,
+  // the next opening for writing removes the file.
+  journal_->insert_frame(record);
   record.id = journal_->database.last_row_id();
   return record;
 }

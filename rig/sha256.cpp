@@ -3,10 +3,7 @@
 #include <openssl/evp.h>
 
 #include <array>
-#include <fstream>
 #include <memory>
-
-#include "drivers/error.h"
 
 namespace lumitexel {
 namespace {
@@ -36,17 +33,6 @@ struct Digest {
 std::string sha256_hex(std::string_view bytes) {
   Digest digest;
   digest.add(bytes.data(), bytes.size());
-  return digest.hex();
-}
-
-std::string sha256_hex_of_file(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw Error(path.string() + ": cannot be read");
-  Digest digest;
-  std::array<char, 1 << 16> buffer{};
-  while (file.read(buffer.data(), buffer.size()) || file.gcount() > 0) {
-    digest.add(buffer.data(), static_cast<std::size_t>(file.gcount()));
-  }
   return digest.hex();
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "processing/brdf/misfit.h"
 #include "processing/brdf/split_directions.h"
 
 namespace lumitexel {
@@ -47,7 +48,7 @@ class Clusterer {
     oneapi::tbb::parallel_for(std::size_t{0}, lumitexels.size(), [&](std::size_t k) {
       double best = std::numeric_limits<double>::infinity();
       for (std::size_t j = 0; j < brdfs.size(); ++j) {
-        const double value = misfit(brdfs[j], observations_.channels, observations_.of(lumitexels[k]), options_.fit.error);
+        const double value = misfit(brdfs[j], observations_.of(lumitexels[k]), options_.fit.error);
         if (value >= best) continue;
         best = value;
         label[k] = static_cast<int>(j);
@@ -160,31 +161,12 @@ bool split_once(const Clusterer& clusterer, std::vector<Material>& materials, co
   return true;
 }
 
-Members all_lumitexels(const Observations& observations) {
-  Members all(observations.lumitexels());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  return all;
-}
-
-Members thinned(const Members& members, std::size_t most) {
-  const std::size_t stride = members.size() / most + 1;
+Members with_samples(const Observations& observations) {
   Members some;
-  for (std::size_t k = 0; k < members.size(); k += stride) some.push_back(members[k]);
-  return some;
-}
-
-// From the selection to everything: labels all lumitexels, refits each material on many of its members, labels again.
-void label_all(const Clusterer& clusterer, const Observations& observations, std::size_t most,
-               std::vector<Material>& materials, Clustering& result) {
-  const Members all = all_lumitexels(observations);
-  std::vector<double> cost;
-  clusterer.assign(Clusterer::brdfs_of(materials), all, result.label, cost);
-  const std::vector<Members> members = Clusterer::members_of(materials.size(), all, result.label);
-  for (std::size_t j = 0; j < materials.size(); ++j) {
-    if (!members[j].empty()) materials[j] = clusterer.fit(thinned(members[j], most), &materials[j].brdf);
+  for (std::size_t i = 0; i < observations.lumitexels(); ++i) {
+    if (!observations.of(i).empty()) some.push_back(i);
   }
-  clusterer.assign(Clusterer::brdfs_of(materials), all, result.label, cost);
-  result.single = clusterer.fit(thinned(all, most), &result.single).brdf;
+  return some;
 }
 
 int largest(const std::vector<Material>& materials) {
@@ -195,24 +177,33 @@ int largest(const std::vector<Material>& materials) {
   return static_cast<int>(best);
 }
 
-}  // namespace
-
-double misfit(const LafortuneBrdf& brdf, int channels, std::span<const Observation> samples, const ErrorModel& error) {
-  double sum = 0.0;
-  for (const Observation& sample : samples) {
-    double squares = 0.0;
-    for (int c = 0; c < channels; ++c) {
-      const auto channel = static_cast<std::size_t>(c);
-      const double predicted = predicted_reflectance(brdf, c, sample.geometry);
-      const double variance = error.variance(predicted, static_cast<double>(sample.variance[channel]));
-      const double residual = predicted - static_cast<double>(sample.reflectance[channel]);
-      squares += residual * residual / variance;
-      sum += std::log(variance);
-    }
-    sum += (kFreedom + channels) * std::log1p(squares / kFreedom);
-  }
-  return sum;
+Members thinned(const Members& members, std::size_t most) {
+  const std::size_t stride = std::max<std::size_t>(1, (members.size() + most / 2) / most);
+  Members some;
+  for (std::size_t k = 0; k < members.size(); k += stride) some.push_back(members[k]);
+  return some;
 }
+
+// From the selection to every lumitexel with samples: labels them, refits each material on many of its members, labels again.
+void label_all(const Clusterer& clusterer, const Observations& observations, std::size_t most,
+               std::vector<Material>& materials, Clustering& result) {
+  const Members all = with_samples(observations);
+  std::vector<int> label;
+  std::vector<double> cost;
+  clusterer.assign(Clusterer::brdfs_of(materials), all, label, cost);
+  const std::vector<Members> members = Clusterer::members_of(materials.size(), all, label);
+  for (std::size_t j = 0; j < materials.size(); ++j) {
+    if (members[j].size() >= kFewestMembers) materials[j] = clusterer.fit(thinned(members[j], most), &materials[j].brdf);
+  }
+  clusterer.assign(Clusterer::brdfs_of(materials), all, label, cost);
+  result.single = clusterer.fit(thinned(all, most), &result.single).brdf;
+  for (Material& material : materials) material.members = 0;
+  for (const int material : label) ++materials[static_cast<std::size_t>(material)].members;
+  result.label.assign(observations.lumitexels(), largest(materials));
+  for (std::size_t k = 0; k < all.size(); ++k) result.label[all[k]] = label[k];
+}
+
+}  // namespace
 
 Clustering cluster_materials(const Observations& observations, const std::vector<std::size_t>& selection,
                              const ClusterOptions& options, const std::function<void(int)>& report) {
@@ -230,11 +221,6 @@ Clustering cluster_materials(const Observations& observations, const std::vector
     if (materials.size() <= before) break;  // the new material did not survive
   }
   label_all(clusterer, observations, options.final_lumitexels, materials, result);
-  for (Material& material : materials) material.members = 0;
-  for (const int material : result.label) ++materials[static_cast<std::size_t>(material)].members;
-  for (std::size_t i = 0; i < observations.lumitexels(); ++i) {
-    if (observations.of(i).empty()) result.label[i] = largest(materials);
-  }
   result.materials = std::move(materials);
   return result;
 }

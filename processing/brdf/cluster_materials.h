@@ -11,7 +11,7 @@ namespace lumitexel {
 
 struct ClusterOptions {
   int materials = 4;
-  std::size_t final_lumitexels = 5000;  // a material's final fit takes at most so many of its members
+  std::size_t final_lumitexels = 5000;  // a material's final fit takes at most about so many of its members
   LobeFitOptions fit;
 };
 
@@ -27,12 +27,6 @@ struct Clustering {
   std::vector<int> label;           // material of every lumitexel; those without samples get the largest material
   int recluster_rounds = 0;
 };
-
-// How badly a BRDF explains a lumitexel: minus twice the log likelihood, up to a constant, of Student's t with
-// kFreedom degrees of freedom a sample and the error model's variance. Its tails are heavy, so one missed shadow does not
-// decide, yet never flat, so that even a lumitexel that no material explains still knows which one is nearer.
-inline constexpr double kFreedom = 4.0;
-double misfit(const LafortuneBrdf& brdf, int channels, std::span<const Observation> samples, const ErrorModel& error);
 
 // Learns on `selection` (lumitexel indices), then labels all lumitexels and refits on many of each material's. Splits the material
 // whose split gains most likelihood: along the first eigenvector of its fit's covariance (eq. 9), along the direction in

@@ -7,6 +7,7 @@
 
 #include "processing/brdf/lobe_need.h"
 #include "processing/brdf/lobe_starts.h"
+#include "processing/brdf/misfit.h"
 
 namespace lumitexel {
 namespace {
@@ -236,9 +237,36 @@ Eigen::MatrixXd covariance_of(const NormalEquations& equations, const std::vecto
   return root * inverse.asDiagonal() * root.transpose();
 }
 
-void switch_lobe_off(const LafortuneBrdf& matte, LafortuneBrdf& brdf) {
-  brdf.diffuse = matte.diffuse;
-  for (auto& lobe : brdf.lobes[0]) lobe = LafortuneLobe{kMinLogPeak};
+// What the covariance said about the lobe goes with it.
+void switch_lobe_off(const LafortuneBrdf& matte, const LobeParameters& layout, LobeFit& fit) {
+  fit.brdf.diffuse = matte.diffuse;
+  for (auto& lobe : fit.brdf.lobes[0]) lobe = LafortuneLobe{kMinLogPeak};
+  const int others = layout.size() - layout.channels;
+  fit.covariance.bottomRows(others).setZero();
+  fit.covariance.rightCols(others).setZero();
+}
+
+LobeFit fit_from(const LafortuneBrdf& start, std::span<const Observation* const> samples, LobeParameters layout,
+                 const LobeFitOptions& options) {
+  LobeFit fit;
+  Eigen::VectorXd values = LobeParameters::from(start, options.shared_shape).values;
+  Problem problem(samples, layout, options.error);
+  for (int round = 0; round < kReweightings; ++round) {
+    problem.reweight(values);
+    const Descent descent = levenberg_marquardt(problem, layout, values, options.max_iterations);
+    values = descent.values;
+    fit.iterations += descent.iterations;
+    fit.converged = descent.converged;
+  }
+  problem.reweight(values);
+  const NormalEquations equations = problem.linearise(values);
+  const auto residuals = static_cast<double>(samples.size()) * layout.channels;
+  fit.cost = equations.cost / residuals;
+  const double spread = equations.cost / std::max(1.0, residuals - layout.size());
+  fit.covariance = spread * covariance_of(equations, held_at_bound(layout, values, equations.gradient), fit.rank_deficient);
+  layout.values = values;
+  fit.brdf = layout.brdf();
+  return fit;
 }
 
 }  // namespace
@@ -285,27 +313,14 @@ LobeFit fit_one_lobe(std::span<const Observation* const> samples, int channels, 
   fit.rank_deficient = samples.empty();
   if (samples.empty()) return fit;
 
-  const LafortuneBrdf first = start != nullptr ? *start : best_lobe_start(samples, channels, options.error);
-  Eigen::VectorXd values = LobeParameters::from(first, options.shared_shape).values;
-  Problem problem(samples, layout, options.error);
-  for (int round = 0; round < kReweightings; ++round) {
-    problem.reweight(values);
-    const Descent descent = levenberg_marquardt(problem, layout, values, options.max_iterations);
-    values = descent.values;
-    fit.iterations += descent.iterations;
-    fit.converged = descent.converged;
+  fit = fit_from(best_lobe_start(samples, channels, options.error), samples, layout, options);
+  if (start != nullptr) {
+    const LobeFit other = fit_from(*start, samples, layout, options);
+    if (misfit(other.brdf, samples, options.error) < misfit(fit.brdf, samples, options.error)) fit = other;
   }
-  problem.reweight(values);
-  const NormalEquations equations = problem.linearise(values);
-  const auto residuals = static_cast<double>(samples.size()) * channels;
-  fit.cost = equations.cost / residuals;
-  const double spread = equations.cost / std::max(1.0, residuals - layout.size());
-  fit.covariance = spread * covariance_of(equations, held_at_bound(layout, values, equations.gradient), fit.rank_deficient);
-  layout.values = values;
-  fit.brdf = layout.brdf();
   const LafortuneBrdf matte = diffuse_alone(samples, options.error, fit.brdf);
   fit.has_lobe = lobe_is_needed(samples, options.error, fit.brdf, matte, layout.size() - layout.channels);
-  if (!fit.has_lobe) switch_lobe_off(matte, fit.brdf);
+  if (!fit.has_lobe) switch_lobe_off(matte, layout, fit);
   return fit;
 }
 

@@ -15,7 +15,6 @@ struct Observation {
   LobeGeometry geometry;
   std::array<float, kMaxChannels> reflectance{};  // r = f * cos_i, 1/sr
   std::array<float, kMaxChannels> variance{};     // of each r from the photograph's noise; 0 where unknown
-  std::uint16_t view = 0;
 };
 
 struct Observations {

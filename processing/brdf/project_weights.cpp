@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "processing/brdf/cluster_materials.h"
+#include "processing/brdf/misfit.h"
 
 namespace lumitexel {
 namespace {
@@ -123,7 +123,8 @@ double relative_sigma(const TexelSystem& system, const NnlsSolution& solution, B
     variance += equation.weight * direction.dot(decomposition.solve(direction));
     square += equation.weight * predicted * predicted;
   }
-  return std::sqrt(std::max(0.0, variance) / square);
+  const double relative = std::sqrt(variance / square);
+  return std::isfinite(relative) ? relative : 1.0;  // nothing is known
 }
 
 struct Candidates {
@@ -176,6 +177,7 @@ TexelWeights project_texel(std::span<const Observation> samples, int channels, c
   TexelWeights result;
   result.weight.assign(basis.size(), 0.0f);
   result.weight[0] = 1.0f;
+  result.relative_sigma = static_cast<float>(samples.empty() ? 1.0 : error.relative);
   if (samples.empty() || nothing_varies(prior)) return result;
   const TexelSystem system = system_of(samples, channels, basis, error);
   BasisMatrix matrix = system.matrix;

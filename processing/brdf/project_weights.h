@@ -25,7 +25,8 @@ struct TexelPrior {
 
 struct TexelWeights {
   std::vector<float> weight;     // of each basis, >= 0
-  float relative_sigma = 0;      // one-sigma of the predicted reflectance, relative, from the posterior
+  float relative_sigma = 0;      // one-sigma of the predicted reflectance, relative: from the posterior; the error model's
+                                 // own where nothing may vary; 1 without samples or where the bases cannot be told apart
 };
 
 // Weights of one texel. basis[0] is the material itself.

@@ -23,7 +23,7 @@ namespace lumitexel {
 namespace {
 
 // Part of the key: change it with anything that changes what a calibration gives.
-constexpr const char* kMethod = "captured calibration 1";
+constexpr const char* kMethod = "captured calibration 2";
 constexpr int kMaskMarginPx = 8;  // a coarse mesh's error and the pose's, in pixels, with room
 
 struct CapturedInputs {

@@ -34,7 +34,7 @@ cv::Mat projection_of(const Mesh& mesh, const CameraModel& camera, const Eigen::
   return picture;
 }
 
-// 3x3 means: every colour of the mosaic takes part, and the threshold need not know their balance. Log scale, because
+// 5x5 means: every colour of the mosaic takes part, and the threshold need not know their balance. Log scale, because
 // panel and object differ by factors.
 cv::Mat smooth_log(const MosaicRadiance& image) {
   cv::Mat value(image.height, image.width, CV_32F), smooth;

@@ -9,13 +9,17 @@
 
 namespace lumitexel {
 
-// Bits of RadianceImage::flags. A pixel with any of them set is not used as a sample.
+// Bits of RadianceImage::flags.
 enum PixelFlag : std::uint8_t {
   kPixelSaturated = 1,  // clipped even in the shortest exposure
   kPixelDark = 2,       // below the noise floor even in the longest exposure (a value is still given)
   kPixelDefective = 4,  // hot or dead, or not finite
   kPixelOutside = 8,    // outside the object's mask, where the session has masks
 };
+
+// Pixels that are no samples of the object. Dark ones are: their value and variance are right, and to leave out those that noise
+// happened to push below the floor would make dark surfaces too bright.
+inline constexpr std::uint8_t kUnusablePixel = kPixelSaturated | kPixelDefective | kPixelOutside;
 
 struct RadianceImage {
   Image radiance;                    // one consistent unit per session, proportional to W/(m^2 sr)

@@ -97,8 +97,8 @@ void fill_atlas(const Atlas& atlas, const LumitexelSet& lumitexels, const std::v
       filled.push_back(texel);
     }
   }
+  fill_unseen(model);  // first, so that no neighbour grows into its texel
   fill_holes(model, std::move(filled));
-  fill_unseen(model);
 }
 
 std::vector<std::vector<std::size_t>> neighbour_counts(const Atlas& atlas, const LumitexelSet& lumitexels,

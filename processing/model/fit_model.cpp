@@ -36,6 +36,7 @@ Clustering learn_materials(const Observations& observations, const FitOptions& o
   ClusterOptions cluster_options;
   cluster_options.materials = options.materials;
   cluster_options.fit.shared_shape = options.shared_lobe_shape;
+  cluster_options.final_lumitexels = options.final_lumitexels;
   cluster_options.fit.error = error;
   const auto selection = select_lumitexels(observations, options.learning_lumitexels);
   if (selection.empty()) {

@@ -10,11 +10,12 @@ FitOptions FitOptions::preset(const std::string& quality) {
   FitOptions options;
   options.quality = quality;
   if (quality == "draft") {
-    options.learning_lumitexels = 2000;
+    options.learning_lumitexels = options.final_lumitexels = 2000;
   } else if (quality == "standard") {
     options.learning_lumitexels = 10000;
+    options.final_lumitexels = 5000;
   } else if (quality == "reference") {
-    options.learning_lumitexels = std::numeric_limits<std::size_t>::max();
+    options.learning_lumitexels = options.final_lumitexels = std::numeric_limits<std::size_t>::max() / 2;
   } else {
     throw BadInput("--quality", "'" + quality + "'", "draft, standard or reference");
   }

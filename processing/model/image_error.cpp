@@ -38,6 +38,7 @@ void ErrorSums::add(const Image& prediction, const Image& photograph, const std:
     linear_.add(p, q);
     clipped_.add(std::min(p, peak), std::min(q, peak));
     square_root_.add(std::sqrt(std::max(p, 0.0)), std::sqrt(std::max(q, 0.0)));
+    if (peak <= 0.0) return;  // a black photograph has no peak to compare with
     error_over_peak_ += (p - q) * (p - q) / (peak * peak);
     ++values_;
   });

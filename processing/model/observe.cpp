@@ -13,7 +13,6 @@ Observations observe(const CalibratedSession& session, const LumitexelSet& lumit
     for (std::size_t i = 0; i < tile.size(); ++i) {
       for (std::size_t s = tile.first_sample[i]; s < tile.first_sample[i + 1]; ++s) {
         Observation observation;
-        observation.view = tile.view[s];
         const Eigen::Vector3d wi = session.views[tile.view[s]].light.direction_from(tile.position[i]);
         const Eigen::Vector3d wo = (eyes[tile.view[s]] - tile.position[i]).normalized();
         observation.geometry = lobe_geometry(tile.normal[i], wi, wo);

@@ -45,6 +45,7 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
   object["options"] = {{"quality", options.quality},
                        {"materials", options.materials},
                        {"learning_lumitexels", options.learning_lumitexels},
+                       {"final_lumitexels", options.final_lumitexels},
                        {"shared_lobe_shape", options.shared_lobe_shape},
                        {"plain_projection", options.plain_projection},
                        {"relative_error", summary.error.relative},

@@ -82,7 +82,7 @@ bool read_footprint(const ViewContext& context, const Footprint& foot, float* ra
       if (weight == 0.0) continue;
       const int x = foot.x + dx, y = foot.y + dy;
       edges |= context.geometry.flags[context.geometry.index(x, y)];
-      if (context.photograph.flag(x, y) != 0) usable = false;
+      if (context.photograph.flag(x, y) & kUnusablePixel) usable = false;
       for (int c = 0; c < context.channels; ++c) {
         radiance[c] += static_cast<float>(weight * context.photograph.radiance.at(x, y, c));
         variance[c] += static_cast<float>(weight * weight * context.photograph.variance.at(x, y, c));

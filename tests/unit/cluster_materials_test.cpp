@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "processing/brdf/misfit.h"
 #include "processing/brdf/select_lumitexels.h"
 #include "tests/unit/synthetic_lumitexels.h"
 
@@ -65,8 +66,8 @@ TEST(ClusterMaterials, TheSingleBrdfIsOneFitToEverything) {
   const Clustering found = cluster(scene.observations, 1);
   double single = 0, material = 0;
   for (std::size_t i = 0; i < found.label.size(); ++i) {
-    single += misfit(found.single, 3, scene.observations.of(i), {0.05, 1e-3});
-    material += misfit(found.materials[0].brdf, 3, scene.observations.of(i), {0.05, 1e-3});
+    single += misfit(found.single, scene.observations.of(i), {0.05, 1e-3});
+    material += misfit(found.materials[0].brdf, scene.observations.of(i), {0.05, 1e-3});
   }
   EXPECT_NEAR(single / material, 1.0, 1e-3);
 }

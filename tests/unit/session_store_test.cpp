@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include <fstream>
 
 #include "drivers/error.h"
@@ -108,9 +110,10 @@ TEST(SessionStore, NothingIsWrittenTwice) {
   EXPECT_FALSE(fs::exists(store.directory() / "frames/another.pgm"));
 }
 
-TEST(SessionStore, WhatTheJournalRefusesLeavesNoFile) {
+TEST(SessionStore, WhatTheJournalRefusesLeavesNoFileOnceReopened) {
   const TemporaryFolder folder;
-  SessionStore store = SessionStore::create(folder / "s", SessionKind::Captured);
+  std::optional<SessionStore> opened = SessionStore::create(folder / "s", SessionKind::Captured);
+  SessionStore& store = *opened;
   store.put_shots(two_shots());
   NewFrame frame = frame_for(two_shots()[0]);
   frame.turntable_deg = std::nan("");
@@ -122,8 +125,10 @@ TEST(SessionStore, WhatTheJournalRefusesLeavesNoFile) {
     frame.name = name;
     EXPECT_THROW(store.commit_frame(frame, "bytes"), Error);
   }
-  EXPECT_TRUE(fs::is_empty(store.directory() / "frames"));
-  EXPECT_TRUE(store.frames().empty());
+  opened.reset();
+  opened = SessionStore::open(folder / "s", OpenMode::ReadWrite);
+  EXPECT_TRUE(fs::is_empty(opened->directory() / "frames"));
+  EXPECT_TRUE(opened->frames().empty());
 }
 
 TEST(SessionStore, OnlyOneWriterAtATime) {

@@ -32,7 +32,6 @@ void add_lumitexels(Observations& observations, const LafortuneBrdf& truth, int 
       const double theta_o = near_mirror ? std::abs(theta_i + spread(random)) : theta(random);
       const double azimuth_o = near_mirror ? azimuth_i + M_PI + spread(random) : azimuth(random);
       Observation sample;
-      sample.view = static_cast<std::uint16_t>(s);
       sample.geometry = lobe_geometry(Eigen::Vector3d::UnitZ(), direction(theta_i, azimuth_i), direction(theta_o, azimuth_o));
       for (int c = 0; c < 3; ++c) {
         const double value = predicted_reflectance(truth, c, sample.geometry);
