@@ -187,7 +187,9 @@ fs::path SessionStore::frame_path(const FrameRecord& frame) const { return journ
 
 fs::path SessionStore::derived_directory() const {
   const fs::path derived = journal_->directory / "derived";
-  fs::create_directories(derived);
+  std::error_code failed;
+  fs::create_directories(derived, failed);
+  if (failed) throw Error(derived.string() + ": cannot be made (" + failed.message() + "); results are kept there");
   return derived;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "processing/calibration/rig_camera.h"
 #include "sim/loaded_object.h"
 #include "sim/procedural_object.h"
 #include "sim/simulated_rig.h"
@@ -72,12 +73,6 @@ std::vector<Eigen::Vector3d> SimulatedWorld::sphere_centres_in_rig() const {
                       i * rig.spheres.spacing_m * settings.sphere_line_direction_in_rig);
   }
   return centres;
-}
-
-CameraModel camera_model_of(const CameraDescription& camera) {
-  const LensDescription& lens = camera.lens;
-  return {camera.limits.width_px, camera.limits.height_px, lens.focal_x_px, lens.focal_y_px, lens.principal_x_px,
-          lens.principal_y_px,    lens.k1,                 lens.k2,         lens.p1,         lens.p2};
 }
 
 std::shared_ptr<SimulatedWorld> build_world(const RigDescription& rig, const std::string& where) {

@@ -41,7 +41,4 @@ class SimulatedWorld {
   std::vector<Eigen::Vector3d> sphere_centres_in_rig() const;
 };
 
-// The camera of a description as processing sees it.
-CameraModel camera_model_of(const CameraDescription& camera);
-
 }  // namespace lumitexel

@@ -170,8 +170,8 @@ std::optional<std::pair<CalibratedSession, CalibrationSummary>> read_calibrated_
       if (!std::filesystem::exists(session.views.back().photograph)) return std::nullopt;
     }
     return std::pair{std::move(session), summary_from(document.at("summary"))};
-  } catch (const json::exception& error) {
-    throw Corrupt(path.string() + ": " + error.what());
+  } catch (const json::exception&) {
+    return std::nullopt;  // damaged: what is derived is made again
   }
 }
 

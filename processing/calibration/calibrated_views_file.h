@@ -15,8 +15,8 @@ namespace lumitexel {
 void write_calibrated_views(const std::filesystem::path& directory, const CalibratedSession& session,
                             const CalibrationSummary& summary);
 
-// None if there is no views.json, or of another version, or a photograph is missing. Throws Corrupt naming the file if
-// it cannot be read. `mesh` stays empty.
+// None if there is no whole views.json of this version or a photograph is missing: then everything is made again.
+// `mesh` stays empty.
 std::optional<std::pair<CalibratedSession, CalibrationSummary>> read_calibrated_views(
     const std::filesystem::path& directory);
 

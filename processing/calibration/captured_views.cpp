@@ -12,6 +12,7 @@
 #include "processing/calibration/captured_frames.h"
 #include "processing/calibration/gray_card.h"
 #include "processing/calibration/object_mask.h"
+#include "processing/calibration/rig_camera.h"
 #include "processing/calibration/sphere_shots.h"
 #include "processing/image/demosaic.h"
 #include "processing/image/hdr_merge.h"
@@ -46,7 +47,7 @@ CapturedInputs read_inputs(const SessionStore& session) {
   in.rig = parse_rig(session.document("rig.toml"), where + "rig.toml");
   in.plan = parse_plan(session.document("plan.toml"), where + "plan.toml");
   in.mesh = parse_mesh(session.document("mesh.ply"), ".ply", where + "mesh.ply");
-  in.camera = camera_model(in.rig.camera);
+  in.camera = camera_model_of(in.rig.camera);
   in.sensor = linear_sensor(in.rig.camera, in.plan.gain_db);
   return in;
 }
@@ -217,20 +218,6 @@ std::pair<CalibratedSession, CalibrationSummary> measure(const SessionStore& ses
 }
 
 }  // namespace
-
-CameraModel camera_model(const CameraDescription& camera) {
-  const LensDescription& lens = camera.lens;
-  return {camera.limits.width_px,
-          camera.limits.height_px,
-          lens.focal_x_px,
-          lens.focal_y_px,
-          lens.principal_x_px,
-          lens.principal_y_px,
-          lens.k1,
-          lens.k2,
-          lens.p1,
-          lens.p2};
-}
 
 std::pair<CalibratedSession, CalibrationSummary> calibrate_captured(const SessionStore& session, Progress& progress) {
   CapturedInputs in = read_inputs(session);

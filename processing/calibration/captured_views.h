@@ -19,7 +19,4 @@ namespace lumitexel {
 // found.
 std::pair<CalibratedSession, CalibrationSummary> calibrate_captured(const SessionStore& session, Progress& progress);
 
-// The rig's camera as a model: its lens and its picture's size.
-CameraModel camera_model(const CameraDescription& camera);
-
 }  // namespace lumitexel

@@ -63,7 +63,8 @@ std::vector<TexelWeights> project_all(const Observations& observations, const st
       const std::size_t i = members[j][k];
       weights[i] = project_texel(observations.of(i), observations.channels, basis, error, prior);
     });
-    summary.texels_by_material.push_back(members[j].size());
+    summary.texels_by_material.push_back(static_cast<std::size_t>(std::count_if(
+        members[j].begin(), members[j].end(), [&](std::size_t i) { return !observations.of(i).empty(); })));
     progress.update(static_cast<std::int64_t>(j + 1));
   }
   return weights;

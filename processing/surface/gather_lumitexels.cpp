@@ -178,7 +178,12 @@ LumitexelSet assemble(const std::vector<Site>& sites, const std::vector<std::siz
 }
 
 RadianceImage read_checked(const View& view, int channels) {
-  RadianceImage photograph = read_radiance_image(view.photograph);
+  RadianceImage photograph;
+  try {
+    photograph = read_radiance_image(view.photograph);
+  } catch (const Error& error) {
+    throw Corrupt(std::string(error.what()) + " (delete the session's folder derived/; it is made again)");
+  }
   const Image& radiance = photograph.radiance;
   if (radiance.width != view.camera.width_px || radiance.height != view.camera.height_px ||
       radiance.channels != channels) {

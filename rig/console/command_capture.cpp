@@ -1,13 +1,9 @@
 #include <memory>
 
-#include "drivers/error.h"
-#include "processing/surface/mesh_file.h"
+#include "rig/console/capture_inputs.h"
 #include "rig/console/capture_result.h"
 #include "rig/console/command.h"
-#include "rig/whole_file.h"
-#include "rig/console/rig_backend.h"
 #include "rig/new_session.h"
-#include "rig/schedule.h"
 #include "rig/sequencer.h"
 
 namespace lumitexel {
@@ -19,25 +15,14 @@ struct CaptureOptions {
   std::string rig, plan, out;
 };
 
-Mesh coarse_mesh(const CapturePlan& plan, const std::string& plan_file, const RigBackend& backend) {
-  if (plan.mesh != "scan") return read_mesh(fs::path(plan_file).parent_path() / plan.mesh);
-  if (!backend.scan) throw BadInput(plan_file + ": mesh", "'scan'", "a mesh file: this rig has no scanner");
-  return backend.scan();
-}
-
 // Everything that can be wrong with the input is found before the session's folder is made.
 CommandResult run(const CaptureOptions& options, CommandContext& context) {
-  SessionContent content;
-  content.documents["rig.toml"] = read_whole_file(options.rig);
-  content.documents["plan.toml"] = read_whole_file(options.plan);
-  const RigDescription rig = parse_rig(content.documents["rig.toml"], options.rig);
-  const CapturePlan plan = parse_plan(content.documents["plan.toml"], options.plan);
-  content.shots = schedule_shots(plan, rig, options.plan);
   SessionStore::require_new_directory(options.out);
-  RigBackend backend = connect_rig(rig, options.rig);
-  content.documents["mesh.ply"] = encode_ply(coarse_mesh(plan, options.plan, backend));
+  CaptureInputs inputs = read_capture_inputs(options.rig, options.plan);
+  RigBackend& backend = inputs.backend;
+  SessionContent content{inputs.documents, inputs.shots, {}};
   content.add_files = [&](const fs::path& directory) {
-    if (backend.write_truth) backend.write_truth(plan, directory / "truth");
+    if (backend.write_truth) backend.write_truth(inputs.plan, directory / "truth");
   };
   SessionStore session = begin_session(options.out, content);
   return capture_result(session, take_missing_shots(session, backend.devices, context.progress, context.stop));

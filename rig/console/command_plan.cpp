@@ -1,12 +1,12 @@
 #include <map>
 #include <memory>
 #include <sstream>
+#include <tuple>
 
 #include "rig/capture_estimate.h"
+#include "rig/console/capture_inputs.h"
 #include "rig/console/command.h"
 #include "rig/console/duration_text.h"
-#include "rig/whole_file.h"
-#include "rig/schedule.h"
 
 namespace lumitexel {
 namespace {
@@ -31,9 +31,8 @@ std::string summary_text(const CapturePlan& plan, const RigDescription& rig, con
 }
 
 CommandResult run(const PlanOptions& options) {
-  const RigDescription rig = parse_rig(read_whole_file(options.rig), options.rig);
-  const CapturePlan plan = parse_plan(read_whole_file(options.plan), options.plan);
-  const std::vector<Shot> shots = schedule_shots(plan, rig, options.plan);
+  const CaptureInputs inputs = read_capture_inputs(options.rig, options.plan);
+  const auto& [rig, plan, shots] = std::tie(inputs.rig, inputs.plan, inputs.shots);
   const CaptureEstimate estimate = estimate_capture(shots, rig);
   CommandResult result;
   result.json = {{"shots", shots.size()},

@@ -14,7 +14,7 @@ CommandResult run(const std::string& directory, CommandContext& context) {
   if (session.kind() != SessionKind::Captured) {
     throw BadInput(directory, "an imported session has nothing to resume", "a session made by `lumitexel capture`");
   }
-  const std::string where = directory + "/session.db: rig.toml";
+  const std::string where = session.document("rig.path");
   RigBackend backend = connect_rig(parse_rig(session.document("rig.toml"), where), where);
   return capture_result(session, take_missing_shots(session, backend.devices, context.progress, context.stop));
 }

@@ -1,4 +1,3 @@
-#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -6,6 +5,7 @@
 #include "drivers/error.h"
 #include "rig/console/command.h"
 #include "rig/console/console_progress.h"
+#include "rig/console/interrupt.h"
 
 namespace lumitexel {
 namespace {
@@ -26,14 +26,17 @@ const std::vector<void (*)(CLI::App&, CommandAction&)> kCommands = {
     add_report_command,
 };
 
-std::stop_source& interrupt() {
-  static std::stop_source source;
-  return source;
+// Those that end cleanly on Ctrl-C; the others may be killed at any time and are.
+bool watches_for_stop(const CLI::App& app) {
+  for (const char* name : {"capture", "resume", "import"}) {
+    if (app.got_subcommand(name)) return true;
+  }
+  return false;
 }
 
-int run(const CommandAction& action, bool json) {
+int run(const CommandAction& action, bool json, std::stop_token stop) {
   ConsoleProgress progress;
-  CommandContext context{progress, interrupt().get_token()};
+  CommandContext context{progress, stop};
   try {
     const CommandResult result = action(context);
     progress.finish();
@@ -47,6 +50,10 @@ int run(const CommandAction& action, bool json) {
     progress.finish();
     std::cerr << "lumitexel: " << error.what() << '\n';
     return kBadInput;
+  } catch (const Cancelled&) {
+    progress.finish();
+    std::cerr << "lumitexel: stopped as asked; a capture keeps what it has, and `lumitexel resume SESSION` goes on\n";
+    return kFailed;
   } catch (const std::exception& error) {
     progress.finish();
     std::cerr << "lumitexel: " << error.what() << '\n';
@@ -68,8 +75,7 @@ int main_function(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kBadInput;
   }
-  std::signal(SIGINT, [](int) { interrupt().request_stop(); });
-  return run(action, json);
+  return run(action, json, watches_for_stop(app) ? stop_on_interrupt() : std::stop_token{});
 }
 
 }  // namespace

@@ -34,6 +34,17 @@ std::string half_bench() {
   return text;
 }
 
+// Killed without warning after some seconds, then gone on with.
+void capture_through_a_kill(const std::string& rig, const std::string& session) {
+  const ProgramRun killed = run_program("capture " + rig + " --out " + session, "timeout -s KILL 8 ");
+  const bool begun = std::filesystem::exists(session);  // a slow machine may not have come so far
+  const ProgramRun rest = run_program(begun ? "resume " + session : "capture " + rig + " --out " + session);
+  ASSERT_EQ(rest.exit_code, 0) << rest.errors;
+  if (killed.exit_code != 0 && begun) {
+    EXPECT_LT(run_program("resume " + session + " --json").json().at("taken").get<int>(), 1);  // nothing is left to take
+  }
+}
+
 TEST(CapturedSession, BecomesAModelThatPredictsAHeldOutPhotograph) {
   const TemporaryFolder folder;
   std::ofstream(folder / "bench.toml") << half_bench();
@@ -45,8 +56,7 @@ TEST(CapturedSession, BecomesAModelThatPredictsAHeldOutPhotograph) {
   EXPECT_GE(plan.json().at("estimate_s").get<double>(), plan.json().at("lower_bound_s").get<double>());
   EXPECT_FALSE(std::filesystem::exists(session));
 
-  const ProgramRun capture = run_program("capture " + rig + " --out " + session);
-  ASSERT_EQ(capture.exit_code, 0) << capture.errors;
+  capture_through_a_kill(rig, session);
   const ProgramRun verify = run_program("verify " + session + " --json");
   ASSERT_EQ(verify.exit_code, 0) << verify.output;
   EXPECT_TRUE(verify.json().at("ok").get<bool>());

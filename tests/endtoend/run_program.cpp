@@ -19,9 +19,9 @@ std::string contents(const std::filesystem::path& path) {
 
 }  // namespace
 
-ProgramRun run_program(const std::string& arguments) {
+ProgramRun run_program(const std::string& arguments, const std::string& before) {
   const TemporaryFolder folder;
-  const std::string command = std::string(LUMITEXEL_PROGRAM) + " " + arguments + " >" + (folder / "out").string() +
+  const std::string command = before + LUMITEXEL_PROGRAM + " " + arguments + " >" + (folder / "out").string() +
                               " 2>" + (folder / "err").string();
   ProgramRun run;
   const int status = std::system(command.c_str());

@@ -13,7 +13,7 @@ struct ProgramRun {
   nlohmann::json json() const { return nlohmann::json::parse(output); }
 };
 
-// arguments: as typed in a shell, after the program's name.
-ProgramRun run_program(const std::string& arguments);
+// arguments: as typed in a shell, after the program's name; before: what stands before it, "timeout 5 " for instance.
+ProgramRun run_program(const std::string& arguments, const std::string& before = "");
 
 }  // namespace lumitexel

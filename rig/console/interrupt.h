@@ -1,0 +1,12 @@
+// Ctrl-C as a stop token: for commands that end cleanly by themselves when asked.
+#pragma once
+
+#include <stop_token>
+
+namespace lumitexel {
+
+// From now on the first SIGINT or SIGTERM requests a stop, from a thread of its own; a second one ends the program at once. Call
+// before any other thread starts. Without this call both signals end the program as usual.
+std::stop_token stop_on_interrupt();
+
+}  // namespace lumitexel
