@@ -31,7 +31,7 @@ class Clusterer {
   Clusterer(const Observations& observations, const ClusterOptions& options)
       : observations_(observations), options_(options) {}
 
-  Material fit(const Members& members, const LafortuneBrdf* start) const {
+  FittedMaterial fit(const Members& members, const LafortuneBrdf* start) const {
     std::vector<const Observation*> samples;
     for (const std::size_t i : members) {
       for (const Observation& sample : observations_.of(i)) samples.push_back(&sample);
@@ -58,7 +58,7 @@ class Clusterer {
   }
 
   // Assigns and refits in turn until the labels settle; returns the final cost. Materials that lose their members vanish.
-  double recluster(std::vector<Material>& materials, const Members& lumitexels, std::vector<int>& label, int rounds,
+  double recluster(std::vector<FittedMaterial>& materials, const Members& lumitexels, std::vector<int>& label, int rounds,
                    int& rounds_used) const {
     std::vector<double> cost;
     std::vector<int> before;
@@ -87,7 +87,7 @@ class Clusterer {
     return fit(worst, nullptr).brdf;
   }
 
-  Split best_split(const Material& material, const Members& members) const {
+  Split best_split(const FittedMaterial& material, const Members& members) const {
     Split best;
     if (members.size() < 2 * kFewestMembers) return best;
     std::vector<int> label;
@@ -97,7 +97,7 @@ class Clusterer {
     for (const BrdfPair& pair : {split_along_covariance(material, options_.fit.shared_shape),
                                  split_along_brightness(material, observations_, members, options_.fit.error),
                                  BrdfPair{material.brdf, fit_of_worst(members, cost)}}) {
-      std::vector<Material> halves{{pair.first, {}, 0}, {pair.second, {}, 0}};
+      std::vector<FittedMaterial> halves{{pair.first, {}, 0}, {pair.second, {}, 0}};
       int rounds = 0;
       const double parted = recluster(halves, members, label, kSplitRounds, rounds);
       if (halves.size() == 2 && whole - parted > best.gain) best = {halves[0].brdf, halves[1].brdf, whole - parted};
@@ -105,9 +105,9 @@ class Clusterer {
     return best;
   }
 
-  static std::vector<LafortuneBrdf> brdfs_of(const std::vector<Material>& materials) {
+  static std::vector<LafortuneBrdf> brdfs_of(const std::vector<FittedMaterial>& materials) {
     std::vector<LafortuneBrdf> brdfs;
-    for (const Material& material : materials) brdfs.push_back(material.brdf);
+    for (const FittedMaterial& material : materials) brdfs.push_back(material.brdf);
     return brdfs;
   }
 
@@ -126,13 +126,13 @@ class Clusterer {
   }
 
   // True if a material vanished, which shifts the labels.
-  bool refit(std::vector<Material>& materials, const Members& lumitexels, const std::vector<int>& label) const {
+  bool refit(std::vector<FittedMaterial>& materials, const Members& lumitexels, const std::vector<int>& label) const {
     const std::vector<Members> members = members_of(materials.size(), lumitexels, label);
-    std::vector<Material> kept(materials.size());
+    std::vector<FittedMaterial> kept(materials.size());
     oneapi::tbb::parallel_for(std::size_t{0}, materials.size(), [&](std::size_t j) {
       if (members[j].size() >= kFewestMembers) kept[j] = fit(members[j], &materials[j].brdf);
     });
-    std::erase_if(kept, [](const Material& material) { return material.members == 0; });
+    std::erase_if(kept, [](const FittedMaterial& material) { return material.members == 0; });
     if (kept.empty()) return false;
     const bool vanished = kept.size() != materials.size();
     materials = std::move(kept);
@@ -144,7 +144,7 @@ class Clusterer {
 };
 
 // Splits once where it gains most; false if no split gains.
-bool split_once(const Clusterer& clusterer, std::vector<Material>& materials, const Members& selection,
+bool split_once(const Clusterer& clusterer, std::vector<FittedMaterial>& materials, const Members& selection,
                 const std::vector<int>& label) {
   const std::vector<Members> members = Clusterer::members_of(materials.size(), selection, label);
   std::size_t chosen = 0;
@@ -169,7 +169,7 @@ Members with_samples(const Observations& observations) {
   return some;
 }
 
-int largest(const std::vector<Material>& materials) {
+int largest(const std::vector<FittedMaterial>& materials) {
   std::size_t best = 0;
   for (std::size_t j = 1; j < materials.size(); ++j) {
     if (materials[j].members > materials[best].members) best = j;
@@ -186,7 +186,7 @@ Members thinned(const Members& members, std::size_t most) {
 
 // From the selection to every lumitexel with samples: labels them, refits each material on many of its members, labels again.
 void label_all(const Clusterer& clusterer, const Observations& observations, std::size_t most,
-               std::vector<Material>& materials, Clustering& result) {
+               std::vector<FittedMaterial>& materials, Clustering& result) {
   const Members all = with_samples(observations);
   std::vector<int> label;
   std::vector<double> cost;
@@ -197,7 +197,7 @@ void label_all(const Clusterer& clusterer, const Observations& observations, std
   }
   clusterer.assign(Clusterer::brdfs_of(materials), all, label, cost);
   result.single = clusterer.fit(thinned(all, most), &result.single).brdf;
-  for (Material& material : materials) material.members = 0;
+  for (FittedMaterial& material : materials) material.members = 0;
   for (const int material : label) ++materials[static_cast<std::size_t>(material)].members;
   result.label.assign(observations.lumitexels(), largest(materials));
   for (std::size_t k = 0; k < all.size(); ++k) result.label[all[k]] = label[k];
@@ -209,7 +209,7 @@ Clustering cluster_materials(const Observations& observations, const std::vector
                              const ClusterOptions& options, const std::function<void(int)>& report) {
   const Clusterer clusterer(observations, options);
   Clustering result;
-  std::vector<Material> materials{clusterer.fit(selection, nullptr)};
+  std::vector<FittedMaterial> materials{clusterer.fit(selection, nullptr)};
   result.single = materials[0].brdf;
   std::vector<int> label(selection.size(), 0);
   report(1);

@@ -15,7 +15,7 @@ struct ClusterOptions {
   LobeFitOptions fit;
 };
 
-struct Material {
+struct FittedMaterial {
   LafortuneBrdf brdf;
   Eigen::MatrixXd covariance;   // of its LobeParameters
   std::size_t members = 0;      // lumitexels
@@ -23,7 +23,7 @@ struct Material {
 
 struct Clustering {
   LafortuneBrdf single;             // one BRDF for everything, where the splitting begins
-  std::vector<Material> materials;  // fewer than asked for if no split made the fit better
+  std::vector<FittedMaterial> materials;  // fewer than asked for if no split made the fit better
   std::vector<int> label;           // material of every lumitexel; those without samples get the largest material
   int recluster_rounds = 0;
 };

@@ -37,7 +37,7 @@ Eigen::VectorXd log_gain(const LafortuneBrdf& brdf, std::span<const Observation>
 
 }  // namespace
 
-BrdfPair split_along_covariance(const Material& material, bool shared_shape) {
+BrdfPair split_along_covariance(const FittedMaterial& material, bool shared_shape) {
   const LobeParameters centre = LobeParameters::from(material.brdf, shared_shape);
   // In relative units, so that kd (1/sr) and the logarithms compare.
   Eigen::VectorXd unit = Eigen::VectorXd::Ones(centre.size());
@@ -54,7 +54,7 @@ BrdfPair split_along_covariance(const Material& material, bool shared_shape) {
   return {up.brdf(), down.brdf()};
 }
 
-BrdfPair split_along_brightness(const Material& material, const Observations& observations,
+BrdfPair split_along_brightness(const FittedMaterial& material, const Observations& observations,
                                 const std::vector<std::size_t>& members, const ErrorModel& error) {
   const int channels = observations.channels;
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(channels);

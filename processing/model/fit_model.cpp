@@ -73,7 +73,7 @@ std::vector<TexelWeights> project_all(const Observations& observations, const st
 void set_materials(const Clustering& clustering, const Atlas& atlas, const LumitexelSet& lumitexels,
                    const Observations& observations, Model& model) {
   std::vector<LafortuneBrdf> brdfs;
-  for (const Material& material : clustering.materials) brdfs.push_back(material.brdf);
+  for (const FittedMaterial& material : clustering.materials) brdfs.push_back(material.brdf);
   const auto counts = neighbour_counts(atlas, lumitexels, clustering.label, brdfs.size());
   const auto bases = material_bases(brdfs, counts, observations);
   for (std::size_t j = 0; j < brdfs.size(); ++j) model.materials.push_back({brdfs[j], bases[j]});

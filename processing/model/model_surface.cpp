@@ -9,7 +9,7 @@ namespace lumitexel {
 
 ModelSurface::ModelSurface(const Model& model) : model_(model), scene_(model.mesh) {}
 
-std::optional<SurfacePoint> ModelSurface::trace(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
+std::optional<TexturedPoint> ModelSurface::trace(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
   const std::optional<RayHit> hit = scene_.closest(origin, direction);
   if (!hit) return std::nullopt;
   const Mesh& mesh = model_.mesh;
@@ -17,7 +17,7 @@ std::optional<SurfacePoint> ModelSurface::trace(const Eigen::Vector3d& origin, c
   const auto interpolate = [&, i = a, j = b, k = c](const auto& attribute) {
     return ((1.0 - hit->u - hit->v) * attribute[i] + hit->u * attribute[j] + hit->v * attribute[k]).eval();
   };
-  SurfacePoint point;
+  TexturedPoint point;
   // From the corners, not from the ray's length: Embree measures that in single precision.
   point.position_in_world = interpolate(mesh.positions);
   point.geometric_normal =
@@ -27,7 +27,7 @@ std::optional<SurfacePoint> ModelSurface::trace(const Eigen::Vector3d& origin, c
   return point;
 }
 
-void ModelSurface::add_texels(const Eigen::Vector2d& texcoord, SurfacePoint& point) const {
+void ModelSurface::add_texels(const Eigen::Vector2d& texcoord, TexturedPoint& point) const {
   const double x = texcoord.x() * model_.width - 0.5, y = (1.0 - texcoord.y()) * model_.height - 0.5;
   const double left = std::floor(x), top = std::floor(y);
   double total = 0.0;
@@ -45,14 +45,14 @@ void ModelSurface::add_texels(const Eigen::Vector2d& texcoord, SurfacePoint& poi
   for (int i = 0; i < point.texel_count; ++i) point.texels[static_cast<std::size_t>(i)].weight /= total;
 }
 
-bool ModelSurface::sees(const SurfacePoint& point, const Light& light) const {
+bool ModelSurface::sees(const TexturedPoint& point, const Light& light) const {
   const Eigen::Vector3d start = point.position_in_world + scene_.surface_offset_m() * point.geometric_normal;
   const double distance_m = light.type == Light::Type::Point ? (light.vector_in_world - start).norm()
                                                              : std::numeric_limits<double>::infinity();
   return !scene_.occluded(start, light.direction_from(start), 0.0, distance_m);
 }
 
-Eigen::Vector3d ModelSurface::shading_normal(const TexelShare& texel, const SurfacePoint& point) const {
+Eigen::Vector3d ModelSurface::shading_normal(const TexelShare& texel, const TexturedPoint& point) const {
   const Eigen::Vector3d normal(model_.normal.at(texel.x, texel.y, 0), model_.normal.at(texel.x, texel.y, 1),
                                model_.normal.at(texel.x, texel.y, 2));
   return normal.isZero() ? point.vertex_normal : normal.normalized();

@@ -17,7 +17,7 @@ struct TexelShare {
   double weight = 0;
 };
 
-struct SurfacePoint {
+struct TexturedPoint {
   Eigen::Vector3d position_in_world, geometric_normal, vertex_normal;  // unit; vertex_normal interpolated
   // The texels around the point that have a material, weights summing to 1; none at all in a hole of the atlas.
   std::array<TexelShare, 4> texels;
@@ -29,17 +29,17 @@ class ModelSurface {
   // Keeps a reference to the model. Its mesh needs texture coordinates.
   explicit ModelSurface(const Model& model);
 
-  std::optional<SurfacePoint> trace(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
+  std::optional<TexturedPoint> trace(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
   // Nothing between the point and the light. The shadow ray starts a hair above the triangle, on the side of its
   // geometric normal, so that a triangle that faces away from the light shades itself.
-  bool sees(const SurfacePoint& point, const Light& light) const;
+  bool sees(const TexturedPoint& point, const Light& light) const;
   // Of the texel; the interpolated vertex normal where the texel has none.
-  Eigen::Vector3d shading_normal(const TexelShare& texel, const SurfacePoint& point) const;
+  Eigen::Vector3d shading_normal(const TexelShare& texel, const TexturedPoint& point) const;
 
   const Model& model() const { return model_; }
 
  private:
-  void add_texels(const Eigen::Vector2d& texcoord, SurfacePoint& point) const;
+  void add_texels(const Eigen::Vector2d& texcoord, TexturedPoint& point) const;
 
   const Model& model_;
   RayScene scene_;

@@ -24,7 +24,7 @@ struct Eye {
   Eigen::Isometry3d world_from_camera;
 };
 
-Radiance shade(const ModelSurface& surface, const SurfacePoint& point, const Eye& eye, FitStage stage) {
+Radiance shade(const ModelSurface& surface, const TexturedPoint& point, const Eye& eye, FitStage stage) {
   Radiance radiance{};
   const Light& light = eye.view.light;
   if (point.texel_count == 0 || !surface.sees(point, light)) return radiance;
@@ -61,12 +61,12 @@ void for_each_pixel(const CameraModel& camera, const PerPixel& per_pixel) {
   });
 }
 
-const TexelShare& nearest(const SurfacePoint& point) {
+const TexelShare& nearest(const TexturedPoint& point) {
   return *std::max_element(point.texels.begin(), point.texels.begin() + point.texel_count,
                            [](const TexelShare& a, const TexelShare& b) { return a.weight < b.weight; });
 }
 
-Eigen::Vector3d blended_normal(const ModelSurface& surface, const SurfacePoint& point) {
+Eigen::Vector3d blended_normal(const ModelSurface& surface, const TexturedPoint& point) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int i = 0; i < point.texel_count; ++i) {
     const TexelShare& texel = point.texels[static_cast<std::size_t>(i)];
@@ -75,14 +75,14 @@ Eigen::Vector3d blended_normal(const ModelSurface& surface, const SurfacePoint& 
   return sum.isZero() ? point.vertex_normal : sum.normalized();
 }
 
-float material_at(const Model& model, const SurfacePoint& point) {
+float material_at(const Model& model, const TexturedPoint& point) {
   if (point.texel_count == 0) return kNoMaterial;
   const TexelShare& texel = nearest(point);
   return model.material[static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(model.width) +
                         static_cast<std::size_t>(texel.x)];
 }
 
-double blended_sigma(const Model& model, const SurfacePoint& point) {
+double blended_sigma(const Model& model, const TexturedPoint& point) {
   double sum = 0.0;
   for (int i = 0; i < point.texel_count; ++i) {
     const TexelShare& texel = point.texels[static_cast<std::size_t>(i)];
@@ -91,7 +91,7 @@ double blended_sigma(const Model& model, const SurfacePoint& point) {
   return sum;
 }
 
-void write_aov(const ModelSurface& surface, const SurfacePoint& point, Aov aov, float* out) {
+void write_aov(const ModelSurface& surface, const TexturedPoint& point, Aov aov, float* out) {
   const Model& model = surface.model();
   const auto store = [out](const Eigen::Vector3d& v) { std::copy(v.data(), v.data() + 3, out); };
   if (aov == Aov::Normal) store(blended_normal(surface, point));
