@@ -27,12 +27,14 @@ void SystemClock::sleep_until(double deadline_s, std::stop_token stop) {
 }
 
 std::int64_t VirtualClock::utc_ns() const {
-  return start_utc_ns_ + static_cast<std::int64_t>(now_s_ * 1e9);
+  return start_utc_ns_ + static_cast<std::int64_t>(now_s_.load() * 1e9);
 }
 
 void VirtualClock::sleep_until(double deadline_s, std::stop_token stop) {
   if (stop.stop_requested()) throw Cancelled("wait cancelled");
-  if (deadline_s > now_s_) now_s_ = deadline_s;
+  double now_s = now_s_.load();
+  while (deadline_s > now_s && !now_s_.compare_exchange_weak(now_s, deadline_s)) {
+  }
 }
 
 }  // namespace lumitexel

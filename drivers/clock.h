@@ -2,6 +2,7 @@
 // session of hours runs in seconds and always the same way.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <stop_token>
 
@@ -30,17 +31,17 @@ class SystemClock final : public Clock {
 };
 
 // A clock that moves only when somebody sleeps on it. Starts at now_s() = 0 and the given civil time.
-// Not for several threads at once.
+// Safe to share between threads: whoever sleeps longest moves it furthest.
 class VirtualClock final : public Clock {
  public:
   explicit VirtualClock(std::int64_t start_utc_ns = 1'700'000'000'000'000'000) : start_utc_ns_(start_utc_ns) {}
-  double now_s() const override { return now_s_; }
+  double now_s() const override { return now_s_.load(); }
   std::int64_t utc_ns() const override;
   void sleep_until(double deadline_s, std::stop_token stop) override;
 
  private:
   std::int64_t start_utc_ns_;
-  double now_s_ = 0.0;
+  std::atomic<double> now_s_ = 0.0;
 };
 
 }  // namespace lumitexel

@@ -1,6 +1,8 @@
 #include "rig/rig_description.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "drivers/error.h"
@@ -32,6 +34,25 @@ void reject_parallel(const TomlTable& table, const std::string& key, const Eigen
   }
 }
 
+void read_choices(const TomlTable& table, CameraLimits& limits) {
+  if (!table.has("exposure_choices_s")) return;
+  limits.exposure_choices_s = table.numbers(
+      "exposure_choices_s", 0, NumberRange::between(limits.exposure_min_s, limits.exposure_max_s));
+  if (!std::is_sorted(limits.exposure_choices_s.begin(), limits.exposure_choices_s.end(), std::less_equal<>())) {
+    table.reject("exposure_choices_s", "not ascending", "each longer than the one before");
+  }
+}
+
+void read_gain(const TomlTable& table, CameraLimits& limits) {
+  if (table.has("gain_range_db")) {
+    const std::vector<double> range = table.numbers("gain_range_db", 2, NumberRange::between(-60.0, 120.0));
+    if (range[0] > range[1]) table.reject("gain_range_db", "not ascending", "[smallest, largest]");
+    limits.gain_min_db = range[0];
+    limits.gain_max_db = range[1];
+  }
+  if (table.has("gain_step_db")) limits.gain_step_db = table.number("gain_step_db", NumberRange::between(0.0, 60.0));
+}
+
 CameraLimits read_limits(const TomlTable& table) {
   CameraLimits limits;
   limits.width_px = table.integer("width_px", 1, kMostPixels);
@@ -49,6 +70,11 @@ CameraLimits read_limits(const TomlTable& table) {
   }
   limits.exposure_step_s = table.number("exposure_step_s", NumberRange::between(0.0, limits.exposure_max_s));
   limits.readout_s = table.number("readout_s", NumberRange::non_negative());
+  read_choices(table, limits);
+  read_gain(table, limits);
+  if (table.has("settings_latency_frames")) {
+    limits.settings_latency_frames = table.integer("settings_latency_frames", 0, 100);
+  }
   return limits;
 }
 
@@ -179,6 +205,12 @@ RigDescription parse_rig(const std::string& toml_text, const std::string& where)
   ring.reject_unread();
   rig.spheres = read_spheres(table.table("spheres"));
   rig.gray_card = read_gray_card(table.table("gray_card"));
+  if (table.has("hardware")) rig.hardware_toml = table.text_of("hardware");
+  if (table.has("recorded")) {
+    const TomlTable recorded = table.table("recorded");
+    rig.recorded_session = recorded.string("session");
+    recorded.reject_unread();
+  }
   if (table.has("simulation")) rig.simulation_toml = table.text_of("simulation");
   table.reject_unread();
   return rig;

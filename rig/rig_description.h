@@ -74,7 +74,7 @@ struct RingFlashDescription { double radius_m = 0; };  // a ring around the lens
 
 struct RigDescription {
   std::string name;
-  std::string backend;  // "simulated", later "hardware" and "recorded"
+  std::string backend;  // "simulated", "hardware" or "recorded"
   CameraDescription camera;
   TurntableDescription turntable;
   LightPositionerDescription light_positioner;
@@ -83,6 +83,10 @@ struct RigDescription {
   GrayCardDescription gray_card;
   // The [simulation] table as TOML text, untouched: only the simulated world understands it. Empty if absent.
   std::string simulation_toml;
+  // Likewise [hardware]: how the devices are connected (rig/hardware_description.h).
+  std::string hardware_toml;
+  // [recorded] session: the session that backend = "recorded" plays back; relative to the rig's file. Empty if absent.
+  std::string recorded_session;
 };
 
 // Reads and checks a rig. `where` names the source in errors. Throws BadInput naming `where`, line and key for

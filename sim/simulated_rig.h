@@ -12,6 +12,7 @@
 
 namespace lumitexel {
 
+class SimulatedBench;
 class SimulatedWorld;
 
 // Reads the rig's [simulation] table. `where` is the rig file's path: a mesh file is looked for relative to its folder.
@@ -23,6 +24,11 @@ std::shared_ptr<SimulatedWorld> build_world(const RigDescription& rig, const std
 // takes is, bit for bit, the one that an uninterrupted session would have taken. Two shots differ in their noise if
 // their keys do. Moves, settling, exposures and readout take their time on the clock.
 RigDevices make_simulated_devices(const RigDescription& rig, std::shared_ptr<SimulatedWorld> world);
+RigDevices make_simulated_devices(const std::shared_ptr<SimulatedBench>& bench);
+
+// The bench whose camera sees the world; its noise is the same whatever devices lie between.
+std::shared_ptr<SimulatedBench> make_rendered_bench(const RigDescription& rig, std::shared_ptr<SimulatedWorld> world,
+                                                    std::shared_ptr<Clock> clock);
 
 // What a scanner would deliver of the world's object: smoothed, decimated, in the table's frame.
 Mesh scanned_mesh(const SimulatedWorld& world);

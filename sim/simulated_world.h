@@ -12,15 +12,9 @@
 #include "sim/material.h"
 #include "sim/simulation_settings.h"
 #include "sim/surface_pattern.h"
+#include "sim/world_state.h"
 
 namespace lumitexel {
-
-// Where the axes stand and what is lit.
-struct WorldState {
-  double turntable_deg = 0, light_azimuth_deg = 0, light_elevation_deg = 0;
-  bool point_light = false, ring_flash = false, backlight = false;
-  bool operator==(const WorldState&) const = default;
-};
 
 class SimulatedWorld {
  public:

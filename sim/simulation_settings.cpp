@@ -26,6 +26,13 @@ class Table {
     value = static_cast<int>(read);
   }
 
+  void boolean(const char* key, bool& value) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return;
+    if (!node->is_boolean()) fail(key, "neither true nor false", "true or false");
+    value = **node->as_boolean();
+  }
+
   template <class Vector>
   void numbers(const char* key, Vector& value, double low, double high) {
     const toml::node* node = find(key);
@@ -135,6 +142,15 @@ void read_sensor(Table& table, SimulationSettings& s) {
   table.number("sensor_temperature_c", s.sensor_temperature_c, -50.0, 80.0);
   table.number("hot_pixel_fraction", s.hot_pixel_fraction, 0.0, 0.1);
   table.number("hot_pixel_current_e_per_s", s.hot_pixel_current_e_per_s, 0.0, 1e7);
+  table.boolean("state_strip", s.state_strip);
+}
+
+void read_mechanics(Table& table, SimulationSettings& s) {
+  table.number("turntable_backlash_deg", s.turntable_backlash_deg, 0.0, 5.0);
+  table.number("turntable_swing_deg", s.turntable_swing_deg, 0.0, 5.0);
+  table.number("turntable_swing_decay_s", s.turntable_swing_decay_s, 1e-3, 10.0);
+  table.number("turntable_swing_hz", s.turntable_swing_hz, 0.1, 100.0);
+  table.number("time_factor", s.time_factor, 0.01, 1000.0);
 }
 
 toml::table parsed(const std::string& toml_text, const std::string& where) {
@@ -165,6 +181,7 @@ SimulationSettings parse_simulation_settings(const std::string& toml_text, const
   read_lamps(table, settings);
   read_spheres(table, settings);
   read_sensor(table, settings);
+  read_mechanics(table, settings);
   table.refuse_the_rest();
   return settings;
 }

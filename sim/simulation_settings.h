@@ -46,6 +46,15 @@ struct SimulationSettings {
   double sensor_temperature_c = 25.0;
   double hot_pixel_fraction = 2e-4;
   double hot_pixel_current_e_per_s = 2000.0;  // mean, at 20 degrees Celsius
+
+  // The turntable's mechanics beyond its encoder: slack between the two, and a swing that dies away after every stop.
+  double turntable_backlash_deg = 0.0;
+  double turntable_swing_deg = 0.0, turntable_swing_decay_s = 0.1, turntable_swing_hz = 8.0;
+
+  // Writes the true state of every exposure over the frame's first pixels (sim/state_strip.h).
+  bool state_strip = false;
+  // Served over protocols, the bench's time runs so many times faster than the machine's.
+  double time_factor = 1.0;
 };
 
 // toml: the table's text, with or without its [simulation] header. Throws BadInput naming `where` and the key.

@@ -6,6 +6,7 @@
 #include "processing/calibration/import_layout.h"
 #include "processing/calibration/rig_camera.h"
 #include "processing/surface/mesh_file.h"
+#include "rig/rig_file.h"
 #include "rig/schedule.h"
 #include "rig/whole_file.h"
 
@@ -36,7 +37,7 @@ void require_in_sight(const Mesh& mesh, const CaptureInputs& inputs, const std::
 
 CaptureInputs read_capture_inputs(const std::string& rig_file, const std::string& plan_file) {
   CaptureInputs inputs;
-  inputs.documents["rig.toml"] = read_whole_file(rig_file);
+  inputs.documents["rig.toml"] = read_rig_file(rig_file);
   inputs.documents["plan.toml"] = read_whole_file(plan_file);
   // So that what the rig's file names relative to itself is found again on resuming.
   inputs.documents["rig.path"] = fs::absolute(rig_file).lexically_normal().string();

@@ -11,22 +11,24 @@ namespace {
 
 using Bench = std::shared_ptr<FakeBench>;
 
+// The bench's clock, shared by everybody.
+std::shared_ptr<Clock> clock_of(const Bench& bench) { return {bench, &bench->clock}; }
+
 class FakeAxis final : public Axis {
  public:
   FakeAxis(Bench bench, std::string name, AxisLimits limits, double FakeBench::*position)
-      : bench_(std::move(bench)), name_(std::move(name)), limits_(std::move(limits)), position_(position) {}
+      : Axis(clock_of(bench)), bench_(std::move(bench)), name_(std::move(name)), limits_(std::move(limits)),
+        position_(position) {}
   std::string name() const override { return name_; }
   AxisLimits limits() const override { return limits_; }
-  double position() const override { return (*bench_).*position_; }
-  void move_to(double target, std::stop_token stop) override {
-    if (!(target >= limits_.min && target <= limits_.max)) throw OutOfRange(name_ + ": out of range");
-    double way = std::abs(target - position());
-    if (limits_.wraps) way = std::min(way, limits_.max - limits_.min - way);
-    ++bench_->moves;
-    if (way > 0) bench_->clock.sleep_until(bench_->clock.now_s() + way / limits_.speed + limits_.settle_s, stop);
-    (*bench_).*position_ = target;
-  }
   void halt() noexcept override { ++bench_->halts; }
+
+ protected:
+  AxisReading read() const override { return {(*bench_).*position_, false, {}}; }
+  void start(double target, std::stop_token) override {
+    ++bench_->moves;
+    (*bench_).*position_ = target;  // at once; the base waits as long as the way takes
+  }
 
  private:
   Bench bench_;
@@ -38,16 +40,18 @@ class FakeAxis final : public Axis {
 class FakeLamp final : public Lamp {
  public:
   FakeLamp(Bench bench, std::string name, bool FakeBench::*lit)
-      : bench_(std::move(bench)), name_(std::move(name)), lit_(lit) {}
+      : Lamp(clock_of(bench), 0.0), bench_(std::move(bench)), name_(std::move(name)), lit_(lit) {}
   std::string name() const override { return name_; }
   bool is_on() const override { return (*bench_).*lit_; }
-  void switch_to(bool on, std::stop_token) override {
-    ++bench_->switches;
-    (*bench_).*lit_ = on;
-  }
   void force_off() noexcept override {
     ++bench_->forced_off;
     (*bench_).*lit_ = false;
+  }
+
+ protected:
+  void command(bool on, std::stop_token) override {
+    ++bench_->switches;
+    (*bench_).*lit_ = on;
   }
 
  private:
@@ -63,7 +67,7 @@ class FakeCamera final : public Camera {
   CameraLimits limits() const override { return limits_; }
 
  protected:
-  void arm(const CameraSettings& settings, std::stop_token) override { armed_ = settings; }
+  CameraSettings arm(const CameraSettings& settings, std::stop_token) override { return armed_ = settings; }
   Frame trigger(std::uint64_t frame_key, std::stop_token stop) override {
     if (bench_->before_exposure) bench_->before_exposure();
     bench_->clock.sleep_until(bench_->clock.now_s() + armed_.exposure_s + limits_.readout_s, stop);
@@ -103,9 +107,6 @@ class FakeCamera final : public Camera {
   CameraLimits limits_;
   CameraSettings armed_;
 };
-
-// The bench's clock, shared by everybody.
-std::shared_ptr<Clock> clock_of(const Bench& bench) { return {bench, &bench->clock}; }
 
 }  // namespace
 

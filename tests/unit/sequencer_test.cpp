@@ -114,7 +114,7 @@ TEST_F(SequencerTest, ACameraThatAlwaysReportsOtherSettingsIsAtFault) {
   EXPECT_EQ(bench_->frames, 3);
   EXPECT_TRUE(store_.frames().empty());
   expect_dark_and_still();
-  EXPECT_TRUE(logged("error", "frames in a row reported"));
+  EXPECT_TRUE(logged("error", "the frame reports"));
 }
 
 TEST_F(SequencerTest, AFrameOfAnotherSizeIsAtFault) {

@@ -1,0 +1,62 @@
+#include "rig/rig_file.h"
+
+#include <algorithm>
+#include <sstream>
+#include <toml++/toml.h>
+#include <vector>
+
+#include "drivers/error.h"
+#include "rig/whole_file.h"
+
+namespace lumitexel {
+namespace {
+
+namespace fs = std::filesystem;
+
+toml::table parsed(const std::string& text, const fs::path& file) {
+  try {
+    return toml::parse(text, file.string());
+  } catch (const toml::parse_error& error) {
+    throw BadInput(file.string() + ":" + std::to_string(error.source().begin.line), std::string(error.description()),
+                   "valid TOML");
+  }
+}
+
+void lay_over(toml::table& under, const toml::table& over) {
+  for (const auto& [key, value] : over) {
+    toml::table* inner = under[key].as_table();
+    if (inner != nullptr && value.is_table()) {
+      lay_over(*inner, *value.as_table());
+    } else {
+      under.insert_or_assign(key, value);
+    }
+  }
+}
+
+toml::table with_bases(const fs::path& file, std::vector<fs::path> seen) {
+  const fs::path whole = fs::weakly_canonical(file);
+  if (std::find(seen.begin(), seen.end(), whole) != seen.end()) {
+    throw BadInput(file.string() + ": base", "the file builds on itself", "another rig's file");
+  }
+  seen.push_back(whole);
+  toml::table over = parsed(read_whole_file(file), file);
+  if (!over.contains("base")) return over;
+  const toml::value<std::string>* base = over["base"].as_string();
+  if (base == nullptr) throw BadInput(file.string() + ": base", "no text", "a rig's file, relative to this one");
+  toml::table under = with_bases(file.parent_path() / base->get(), std::move(seen));
+  over.erase("base");
+  lay_over(under, over);
+  return under;
+}
+
+}  // namespace
+
+std::string read_rig_file(const fs::path& file) {
+  const std::string text = read_whole_file(file);
+  if (!parsed(text, file).contains("base")) return text;
+  std::ostringstream merged;
+  merged << with_bases(file, {}) << '\n';
+  return merged.str();
+}
+
+}  // namespace lumitexel

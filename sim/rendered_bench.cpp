@@ -1,0 +1,42 @@
+// A bench whose camera sees the rendered world through the simulated sensor.
+#include "sim/render_radiance.h"
+#include "sim/sensor.h"
+#include "sim/simulated_bench.h"
+#include "sim/simulated_rig.h"
+
+namespace lumitexel {
+namespace {
+
+struct RenderedPixels {
+  explicit RenderedPixels(const std::shared_ptr<const SimulatedWorld>& world)
+      : renderer(world), sensor(world->rig.camera, world->settings) {}
+  RadianceRenderer renderer;
+  SimulatedSensor sensor;
+};
+
+BenchBehaviour behaviour_of(const SimulationSettings& settings) {
+  BenchBehaviour behaviour;
+  behaviour.seed = settings.seed;
+  behaviour.lamp_settle_s = settings.lamp_settle_s;
+  behaviour.sensor_temperature_c = settings.sensor_temperature_c;
+  behaviour.state_strip = settings.state_strip;
+  behaviour.turntable_backlash_deg = settings.turntable_backlash_deg;
+  behaviour.turntable_swing_deg = settings.turntable_swing_deg;
+  behaviour.turntable_swing_decay_s = settings.turntable_swing_decay_s;
+  behaviour.turntable_swing_hz = settings.turntable_swing_hz;
+  return behaviour;
+}
+
+}  // namespace
+
+std::shared_ptr<SimulatedBench> make_rendered_bench(const RigDescription& rig, std::shared_ptr<SimulatedWorld> world,
+                                                    std::shared_ptr<Clock> clock) {
+  const auto pixels = std::make_shared<RenderedPixels>(world);
+  return std::make_shared<SimulatedBench>(
+      rig, behaviour_of(world->settings), std::move(clock),
+      [pixels](const WorldState& state, const CameraSettings& settings, std::uint64_t noise_key) {
+        return pixels->sensor.expose(*pixels->renderer.render(state), settings, noise_key);
+      });
+}
+
+}  // namespace lumitexel
