@@ -7,6 +7,7 @@
 #include "drivers/clock.h"
 #include "drivers/light.h"
 #include "drivers/motion.h"
+#include "rig/safety_lane.h"
 
 namespace lumitexel {
 
@@ -15,6 +16,8 @@ struct RigDevices {
   std::unique_ptr<Camera> camera;
   std::unique_ptr<Axis> turntable, light_azimuth, light_elevation;
   std::unique_ptr<Lamp> point_light, ring_flash, backlight;
+  // Empty for rigs that can hurt nobody: simulated in process, recorded.
+  std::unique_ptr<SafetyLane> safety;
 };
 
 }  // namespace lumitexel

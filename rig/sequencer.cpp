@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "drivers/error.h"
+#include "rig/guarded_run.h"
 #include "rig/raw_frame_file.h"
 
 namespace lumitexel {
@@ -26,10 +27,6 @@ Lighting lighting_of(ShotKind kind) {
   return {false, false, false};
 }
 
-double difference_deg(const AxisLimits& limits, double a, double b) {
-  return limits.wraps ? std::abs(std::remainder(a - b, limits.max - limits.min)) : std::abs(a - b);
-}
-
 // An axis that remembers where it was sent.
 class SentAxis {
  public:
@@ -43,7 +40,7 @@ class SentAxis {
   }
   double read_back() const {
     const double position = axis_.position();
-    if (difference_deg(limits_, position, *sent_to_) <= kAxisTolerance_deg) return position;
+    if (distance_between(limits_, position, *sent_to_) <= kAxisTolerance_deg) return position;
     std::ostringstream text;  // reached for NaN, too
     text << axis_.name() << ": sent to " << *sent_to_ << " deg, stands at " << position << " deg";
     throw Protocol(text.str());
@@ -55,55 +52,60 @@ class SentAxis {
   std::optional<double> sent_to_;
 };
 
-class DarkAndStill {
- public:
-  explicit DarkAndStill(RigDevices& devices) : devices_(devices) {}
-  ~DarkAndStill() {
-    for (Lamp* lamp : {devices_.point_light.get(), devices_.ring_flash.get(), devices_.backlight.get()}) {
-      lamp->force_off();
-    }
-    for (Axis* axis : {devices_.turntable.get(), devices_.light_azimuth.get(), devices_.light_elevation.get()}) {
-      axis->halt();
-    }
-  }
-  DarkAndStill(const DarkAndStill&) = delete;
-  DarkAndStill& operator=(const DarkAndStill&) = delete;
+// A shot that takes longer than this many seconds beyond its moves and exposure, or a frame that is not on the disk by
+// then, is a program or a disk that hangs: lamps must not burn on for that.
+constexpr double kShotGrace_s = 60.0, kStoring_s = 10.0;
 
- private:
-  RigDevices& devices_;
-};
-
-void require_whole(const Frame& frame, const CameraLimits& limits, const std::string& camera) {
-  const bool same = frame.width_px == limits.width_px && frame.height_px == limits.height_px &&
-                    frame.bits == limits.bits && frame.mosaic == limits.mosaic;
-  if (same) return;
-  std::ostringstream text;
-  text << camera << ": a frame of " << frame.width_px << " x " << frame.height_px << " pixels, " << frame.bits
-       << " bits, " << to_string(frame.mosaic) << " came from a camera of " << limits.width_px << " x "
-       << limits.height_px << ", " << limits.bits << " bits, " << to_string(limits.mosaic);
-  throw Protocol(text.str());
+// Longest time that this axis may take for any motion.
+double longest_motion_s(const AxisLimits& limits) {
+  return 1.5 * (limits.max - limits.min) / limits.speed + limits.settle_s + limits.grace_s;
 }
 
 class Sequencer {
  public:
-  Sequencer(RigDevices& devices, std::stop_token stop)
-      : devices_(devices), stop_(std::move(stop)), turntable_(*devices.turntable),
-        light_azimuth_(*devices.light_azimuth), light_elevation_(*devices.light_elevation) {}
+  Sequencer(RigDevices& devices, GuardedRun& guard)
+      : devices_(devices), guard_(guard), stop_(guard.stop()), turntable_(*devices.turntable),
+        light_azimuth_(*devices.light_azimuth), light_elevation_(*devices.light_elevation) {
+    for (const Axis* axis : {devices.turntable.get(), devices.light_azimuth.get(), devices.light_elevation.get()}) {
+      moves_s_ += longest_motion_s(axis->limits());
+    }
+  }
 
   void take(const Shot& shot, SessionStore& session) {
     if (stop_.stop_requested()) throw Cancelled("capture cancelled before shot " + std::to_string(shot.id));
+    const std::string number = std::to_string(shot.id);
+    guard_.expect_life_within(moves_s_ + 3.0 * shot.camera.exposure_s + kShotGrace_s, "taking shot " + number);
+    const Frame frame = expose(shot);
+    const NewFrame record = record_of(shot, frame);
+    // Last: a lamp that went out or was switched off while the shutter was open spoils the frame.
+    require_lit(lighting_of(shot.kind));
+    if (stop_.stop_requested()) throw Cancelled("capture stopped during shot " + number);
+    guard_.expect_life_within(kStoring_s, "storing the frame of shot " + number);
+    session.commit_frame(record, encode_pgm(frame));
+  }
+
+ private:
+  Frame expose(const Shot& shot) {
     const Lighting lighting = lighting_of(shot.kind);
     switch_lamps(lighting, false);  // first, so that never two lamps are lit together
     turntable_.send_to(shot.turntable_deg, stop_);
     light_azimuth_.send_to(shot.light_azimuth_deg, stop_);
     light_elevation_.send_to(shot.light_elevation_deg, stop_);
     switch_lamps(lighting, true);
-    const Frame frame = devices_.camera->shoot(shot.camera, stop_, static_cast<std::uint64_t>(shot.id));
-    require_whole(frame, devices_.camera->limits(), devices_.camera->name());
-    session.commit_frame(record_of(shot, frame), encode_pgm(frame));
+    return devices_.camera->shoot(shot.camera, stop_, static_cast<std::uint64_t>(shot.id));
   }
 
- private:
+  void require_lit(const Lighting& lighting) const {
+    const auto check = [](const Lamp& lamp, bool wanted) {
+      if (lamp.is_on() == wanted) return;
+      throw Protocol(lamp.name() + ": was to be " + (wanted ? "on" : "off") + " during the exposure, and is " +
+                     (wanted ? "off" : "on") + " after it");
+    };
+    check(*devices_.point_light, lighting.point);
+    check(*devices_.ring_flash, lighting.ring);
+    check(*devices_.backlight, lighting.back);
+  }
+
   // The lamps whose wanted state is `on`; the others stay as they are.
   void switch_lamps(const Lighting& lighting, bool on) {
     const auto turn = [&](Lamp& lamp, bool wanted) {
@@ -132,7 +134,9 @@ class Sequencer {
   }
 
   RigDevices& devices_;
+  GuardedRun& guard_;
   std::stop_token stop_;
+  double moves_s_ = 0;
   SentAxis turntable_, light_azimuth_, light_elevation_;
 };
 
@@ -153,16 +157,19 @@ SequenceSummary take_missing_shots(SessionStore& session, RigDevices& devices, P
   session.log_event("info", "begin: " + std::to_string(missing.size()) + " shots missing", devices.clock->utc_ns());
   progress.begin("photographing", static_cast<std::int64_t>(missing.size()), "shots");
   SequenceSummary summary;
+  GuardedRun guard(devices, stop);
   try {
-    const DarkAndStill at_the_end(devices);
-    Sequencer sequencer(devices, stop);
+    Sequencer sequencer(devices, guard);
     for (const Shot& shot : missing) {
       sequencer.take(shot, session);
       progress.update(++summary.shots);
     }
+    guard.finish();
   } catch (const std::exception& error) {
-    log_fault(session, error.what(), devices.clock->utc_ns());
-    throw;
+    // First of all, and before anything is written: dark and still.
+    const std::string cause = guard.abandon(error.what());
+    log_fault(session, cause, devices.clock->utc_ns());
+    guard.rethrow_or_explain(cause);
   }
   summary.seconds = devices.clock->now_s() - start_s;
   session.log_event("info", "end: " + std::to_string(summary.shots) + " shots taken", devices.clock->utc_ns());
