@@ -29,6 +29,7 @@ struct CommandContext {
 using CommandAction = std::function<CommandResult(CommandContext&)>;
 
 // Each declares its subcommand on `app` and, when the user chose it, sets `action`.
+void add_commission_command(CLI::App& app, CommandAction& action);
 void add_plan_command(CLI::App& app, CommandAction& action);
 void add_capture_command(CLI::App& app, CommandAction& action);
 void add_resume_command(CLI::App& app, CommandAction& action);

@@ -14,6 +14,7 @@ constexpr int kFailed = 1, kBadInput = 2;
 
 // In the order in which a user meets them; the help lists them so.
 const std::vector<void (*)(CLI::App&, CommandAction&)> kCommands = {
+    add_commission_command,
     add_plan_command,
     add_capture_command,
     add_resume_command,
@@ -28,8 +29,8 @@ const std::vector<void (*)(CLI::App&, CommandAction&)> kCommands = {
 
 // Those that end cleanly on Ctrl-C; the others may be killed at any time and are.
 bool watches_for_stop(const CLI::App& app) {
-  for (const char* name : {"capture", "resume", "import"}) {
-    if (app.got_subcommand(name)) return true;
+  for (const char* name : {"commission", "capture", "resume", "import", "replay", "simulate"}) {
+    if (app.get_subcommand_ptr(name) && app.got_subcommand(name)) return true;
   }
   return false;
 }
