@@ -1,30 +1,16 @@
 #include "rig/sequencer.h"
 
 #include <cmath>
+#include <exception>
 #include <optional>
 #include <sstream>
 
 #include "drivers/error.h"
+#include "rig/lighting.h"
 #include "rig/raw_frame_file.h"
 
 namespace lumitexel {
 namespace {
-
-struct Lighting {
-  bool point, ring, back;
-};
-
-Lighting lighting_of(ShotKind kind) {
-  switch (kind) {
-    case ShotKind::Silhouette: return {false, false, true};
-    case ShotKind::SpheresRing: return {false, true, false};
-    case ShotKind::SpheresPoint:
-    case ShotKind::Object:
-    case ShotKind::GrayCard: return {true, false, false};
-    case ShotKind::Dark: break;
-  }
-  return {false, false, false};
-}
 
 double difference_deg(const AxisLimits& limits, double a, double b) {
   return limits.wraps ? std::abs(std::remainder(a - b, limits.max - limits.min)) : std::abs(a - b);
@@ -73,6 +59,35 @@ class DarkAndStill {
   RigDevices& devices_;
 };
 
+// Writes what the camera discards into the journal for as long as it lives. A journal that cannot be written stops the
+// capture, but not from within the camera: an error thrown there would be taken for the camera's.
+class DiscardJournal {
+ public:
+  DiscardJournal(RigDevices& devices, SessionStore& session) : camera_(*devices.camera) {
+    camera_.on_discard([this, &devices, &session](const DiscardedFrame& frame) {
+      try {
+        session.log_discard({static_cast<std::int64_t>(frame.frame_key), ++attempt_, frame.asked, frame.reported,
+                             frame.cause, devices.clock->utc_ns()});
+      } catch (const Error&) {
+        failure_ = std::current_exception();
+      }
+    });
+  }
+  ~DiscardJournal() { camera_.on_discard(nullptr); }
+  DiscardJournal(const DiscardJournal&) = delete;
+  DiscardJournal& operator=(const DiscardJournal&) = delete;
+
+  void begin_shot() { attempt_ = 0; }
+  void require_written() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  Camera& camera_;
+  int attempt_ = 0;
+  std::exception_ptr failure_;
+};
+
 void require_whole(const Frame& frame, const CameraLimits& limits, const std::string& camera) {
   const bool same = frame.width_px == limits.width_px && frame.height_px == limits.height_px &&
                     frame.bits == limits.bits && frame.mosaic == limits.mosaic;
@@ -86,8 +101,8 @@ void require_whole(const Frame& frame, const CameraLimits& limits, const std::st
 
 class Sequencer {
  public:
-  Sequencer(RigDevices& devices, std::stop_token stop)
-      : devices_(devices), stop_(std::move(stop)), turntable_(*devices.turntable),
+  Sequencer(RigDevices& devices, SessionStore& session, std::stop_token stop)
+      : devices_(devices), stop_(std::move(stop)), discards_(devices, session), turntable_(*devices.turntable),
         light_azimuth_(*devices.light_azimuth), light_elevation_(*devices.light_elevation) {}
 
   void take(const Shot& shot, SessionStore& session) {
@@ -98,7 +113,10 @@ class Sequencer {
     light_azimuth_.send_to(shot.light_azimuth_deg, stop_);
     light_elevation_.send_to(shot.light_elevation_deg, stop_);
     switch_lamps(lighting, true);
-    const Frame frame = devices_.camera->shoot(shot.camera, stop_, static_cast<std::uint64_t>(shot.id));
+    discards_.begin_shot();
+    const Frame frame =
+        devices_.camera->shoot(shot.camera, stop_, static_cast<std::uint64_t>(shot.id), kShotAttempts);
+    discards_.require_written();
     require_whole(frame, devices_.camera->limits(), devices_.camera->name());
     session.commit_frame(record_of(shot, frame), encode_pgm(frame));
   }
@@ -133,6 +151,7 @@ class Sequencer {
 
   RigDevices& devices_;
   std::stop_token stop_;
+  DiscardJournal discards_;
   SentAxis turntable_, light_azimuth_, light_elevation_;
 };
 
@@ -148,14 +167,18 @@ void log_fault(SessionStore& session, const std::string& what, std::int64_t utc_
 
 SequenceSummary take_missing_shots(SessionStore& session, RigDevices& devices, Progress& progress,
                                    std::stop_token stop) {
-  const std::vector<Shot> missing = session.missing_shots();
+  return take_shots(session, devices, session.missing_shots(), progress, std::move(stop));
+}
+
+SequenceSummary take_shots(SessionStore& session, RigDevices& devices, const std::vector<Shot>& missing,
+                           Progress& progress, std::stop_token stop) {
   const double start_s = devices.clock->now_s();
   session.log_event("info", "begin: " + std::to_string(missing.size()) + " shots missing", devices.clock->utc_ns());
   progress.begin("photographing", static_cast<std::int64_t>(missing.size()), "shots");
   SequenceSummary summary;
   try {
     const DarkAndStill at_the_end(devices);
-    Sequencer sequencer(devices, stop);
+    Sequencer sequencer(devices, session, stop);
     for (const Shot& shot : missing) {
       sequencer.take(shot, session);
       progress.update(++summary.shots);

@@ -33,6 +33,7 @@ void add_plan_command(CLI::App& app, CommandAction& action);
 void add_capture_command(CLI::App& app, CommandAction& action);
 void add_resume_command(CLI::App& app, CommandAction& action);
 void add_verify_command(CLI::App& app, CommandAction& action);
+void add_replay_command(CLI::App& app, CommandAction& action);
 void add_import_command(CLI::App& app, CommandAction& action);
 void add_calibrate_command(CLI::App& app, CommandAction& action);
 void add_fit_command(CLI::App& app, CommandAction& action);

@@ -18,6 +18,7 @@ const std::vector<void (*)(CLI::App&, CommandAction&)> kCommands = {
     add_capture_command,
     add_resume_command,
     add_verify_command,
+    add_replay_command,
     add_import_command,
     add_calibrate_command,
     add_fit_command,
@@ -28,7 +29,7 @@ const std::vector<void (*)(CLI::App&, CommandAction&)> kCommands = {
 
 // Those that end cleanly on Ctrl-C; the others may be killed at any time and are.
 bool watches_for_stop(const CLI::App& app) {
-  for (const char* name : {"capture", "resume", "import"}) {
+  for (const char* name : {"capture", "resume", "replay", "import"}) {
     if (app.got_subcommand(name)) return true;
   }
   return false;
