@@ -140,6 +140,7 @@ Frame Camera::shoot(const CameraSettings& wanted, std::stop_token stop, std::uin
   bool failed = false;  // the attempt before: by a fault, not by its frame
   for (int left = std::max(1, max_attempts);;) {
     --left;
+    bool told = false;  // of this attempt
     try {
       if (failed) recover(stop);
       failed = false;
@@ -153,6 +154,7 @@ Frame Camera::shoot(const CameraSettings& wanted, std::stop_token stop, std::uin
         return frame;
       }
       discard(frame_key, settings, frame.reported, cause);
+      told = true;
       if (left <= 0) throw Protocol(name() + ": " + cause + "; " + std::to_string(max_attempts) + " attempts");
     } catch (const Error& error) {
       const bool worth_another = dynamic_cast<const Timeout*>(&error) || dynamic_cast<const Disconnected*>(&error) ||
@@ -161,9 +163,10 @@ Frame Camera::shoot(const CameraSettings& wanted, std::stop_token stop, std::uin
       // the last one, it is shot once more, and no harm is done.
       last_settings_.reset();
       last_device_time_s_ = -std::numeric_limits<double>::infinity();
-      if (!worth_another || left <= 0) throw;
+      if (!worth_another) throw;
+      if (!told) discard(frame_key, settings, {}, error.what());
+      if (left <= 0) throw;
       failed = true;
-      discard(frame_key, settings, {}, error.what());
     }
   }
 }

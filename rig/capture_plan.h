@@ -12,6 +12,7 @@ struct PlannedView {
   std::string name;  // "fit_000", "heldout_003": unique, a file name without extension
   bool heldout = false;
   double turntable_deg = 0, light_azimuth_deg = 0, light_elevation_deg = 0;
+  bool operator==(const PlannedView&) const = default;
 };
 
 struct CapturePlan {
@@ -25,6 +26,7 @@ struct CapturePlan {
   double gray_card_light_azimuth_deg = 0, gray_card_light_elevation_deg = 0;
   int darks_per_exposure = 0;
   double gain_db = 0;
+  bool operator==(const CapturePlan&) const = default;
 };
 
 // Reads and checks a plan; same errors as parse_rig.

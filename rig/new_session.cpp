@@ -12,6 +12,7 @@ void fill(const fs::path& directory, const SessionContent& content) {
   SessionStore store = SessionStore::create(directory, SessionKind::Captured);
   for (const auto& [name, bytes] : content.documents) store.put_document(name, bytes);
   store.put_shots(content.shots);
+  if (content.replayed_from) store.put_replay_source(*content.replayed_from);
   if (content.add_files) content.add_files(directory);
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct SessionContent {
   std::vector<Shot> shots;
   // Puts further files into the session's folder before anybody sees it; may be empty.
   std::function<void(const std::filesystem::path&)> add_files;
+  std::optional<ReplaySource> replayed_from = std::nullopt;
 };
 
 // Everything is made in a folder beside, DIRECTORY.preparing, which is then renamed; a kill at any moment leaves either

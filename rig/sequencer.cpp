@@ -1,31 +1,17 @@
 #include "rig/sequencer.h"
 
 #include <cmath>
+#include <exception>
 #include <optional>
 #include <sstream>
 
 #include "drivers/error.h"
 #include "rig/guarded_run.h"
+#include "rig/lighting.h"
 #include "rig/raw_frame_file.h"
 
 namespace lumitexel {
 namespace {
-
-struct Lighting {
-  bool point, ring, back;
-};
-
-Lighting lighting_of(ShotKind kind) {
-  switch (kind) {
-    case ShotKind::Silhouette: return {false, false, true};
-    case ShotKind::SpheresRing: return {false, true, false};
-    case ShotKind::SpheresPoint:
-    case ShotKind::Object:
-    case ShotKind::GrayCard: return {true, false, false};
-    case ShotKind::Dark: break;
-  }
-  return {false, false, false};
-}
 
 // An axis that remembers where it was sent.
 class SentAxis {
@@ -61,11 +47,40 @@ double longest_motion_s(const AxisLimits& limits) {
   return 1.5 * (limits.max - limits.min) / limits.speed + limits.settle_s + limits.grace_s;
 }
 
+// Writes what the camera discards into the journal for as long as it lives. A journal that cannot be written stops the
+// capture, but not from within the camera: an error thrown there would be taken for the camera's.
+class DiscardJournal {
+ public:
+  DiscardJournal(RigDevices& devices, SessionStore& session) : camera_(*devices.camera) {
+    camera_.on_discard([this, &devices, &session](const DiscardedFrame& frame) {
+      try {
+        session.log_discard({static_cast<std::int64_t>(frame.frame_key), ++attempt_, frame.asked, frame.reported,
+                             frame.cause, devices.clock->utc_ns()});
+      } catch (const Error&) {
+        failure_ = std::current_exception();
+      }
+    });
+  }
+  ~DiscardJournal() { camera_.on_discard(nullptr); }
+  DiscardJournal(const DiscardJournal&) = delete;
+  DiscardJournal& operator=(const DiscardJournal&) = delete;
+
+  void begin_shot() { attempt_ = 0; }
+  void require_written() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  Camera& camera_;
+  int attempt_ = 0;
+  std::exception_ptr failure_;
+};
+
 class Sequencer {
  public:
-  Sequencer(RigDevices& devices, GuardedRun& guard)
-      : devices_(devices), guard_(guard), stop_(guard.stop()), turntable_(*devices.turntable),
-        light_azimuth_(*devices.light_azimuth), light_elevation_(*devices.light_elevation) {
+  Sequencer(RigDevices& devices, SessionStore& session, GuardedRun& guard)
+      : devices_(devices), guard_(guard), stop_(guard.stop()), discards_(devices, session),
+        turntable_(*devices.turntable), light_azimuth_(*devices.light_azimuth), light_elevation_(*devices.light_elevation) {
     for (const Axis* axis : {devices.turntable.get(), devices.light_azimuth.get(), devices.light_elevation.get()}) {
       moves_s_ += longest_motion_s(axis->limits());
     }
@@ -92,7 +107,10 @@ class Sequencer {
     light_azimuth_.send_to(shot.light_azimuth_deg, stop_);
     light_elevation_.send_to(shot.light_elevation_deg, stop_);
     switch_lamps(lighting, true);
-    return devices_.camera->shoot(shot.camera, stop_, static_cast<std::uint64_t>(shot.id));
+    discards_.begin_shot();
+    Frame frame = devices_.camera->shoot(shot.camera, stop_, static_cast<std::uint64_t>(shot.id), kShotAttempts);
+    discards_.require_written();
+    return frame;
   }
 
   void require_lit(const Lighting& lighting) const {
@@ -137,6 +155,7 @@ class Sequencer {
   GuardedRun& guard_;
   std::stop_token stop_;
   double moves_s_ = 0;
+  DiscardJournal discards_;
   SentAxis turntable_, light_azimuth_, light_elevation_;
 };
 
@@ -152,14 +171,18 @@ void log_fault(SessionStore& session, const std::string& what, std::int64_t utc_
 
 SequenceSummary take_missing_shots(SessionStore& session, RigDevices& devices, Progress& progress,
                                    std::stop_token stop) {
-  const std::vector<Shot> missing = session.missing_shots();
+  return take_shots(session, devices, session.missing_shots(), progress, std::move(stop));
+}
+
+SequenceSummary take_shots(SessionStore& session, RigDevices& devices, const std::vector<Shot>& missing,
+                           Progress& progress, std::stop_token stop) {
   const double start_s = devices.clock->now_s();
   session.log_event("info", "begin: " + std::to_string(missing.size()) + " shots missing", devices.clock->utc_ns());
   progress.begin("photographing", static_cast<std::int64_t>(missing.size()), "shots");
   SequenceSummary summary;
   GuardedRun guard(devices, stop);
   try {
-    Sequencer sequencer(devices, guard);
+    Sequencer sequencer(devices, session, guard);
     for (const Shot& shot : missing) {
       sequencer.take(shot, session);
       progress.update(++summary.shots);

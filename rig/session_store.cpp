@@ -175,6 +175,7 @@ SessionStore SessionStore::open(const fs::path& directory, OpenMode mode) {
   SqliteStatement kind = journal->database.prepare("SELECT kind FROM session");
   journal->kind = session_kind_from_string(kind.step() ? kind.bytes(0) : "", file.string());
   if (writing) {
+    upgrade_session_schema(journal->database);
     fs::create_directories(journal->frames_directory());
     journal->remove_unjournalled_files();
   }
@@ -274,6 +275,50 @@ std::vector<FrameRecord> SessionStore::frames() const {
   std::vector<FrameRecord> frames;
   while (rows.step()) frames.push_back(frame_of(rows));
   return frames;
+}
+
+void SessionStore::log_discard(const DiscardRecord& discard) {
+  SqliteStatement insert = journal_->database.prepare("INSERT INTO discards VALUES (NULL,?,?,?,?,?,?,?,?)");
+  insert.with(discard.shot_id).with(std::int64_t{discard.attempt});
+  insert.with(discard.asked.exposure_s).with(discard.asked.gain_db);
+  if (discard.reported) {
+    insert.with(discard.reported->exposure_s).with(discard.reported->gain_db);
+  } else {
+    insert.with_null().with_null();
+  }
+  insert.with(discard.cause).with(discard.utc_ns).step();
+}
+
+std::vector<DiscardRecord> SessionStore::discards() const {
+  std::vector<DiscardRecord> discards;
+  if (!has_discard_tables(journal_->database)) return discards;
+  SqliteStatement rows = journal_->database.prepare(
+      "SELECT shot_id, attempt, asked_exposure_s, asked_gain_db, reported_exposure_s, reported_gain_db, cause, utc_ns "
+      "FROM discards ORDER BY id");
+  while (rows.step()) {
+    DiscardRecord discard;
+    discard.shot_id = rows.integer(0);
+    discard.attempt = static_cast<int>(rows.integer(1));
+    discard.asked = {rows.number(2), rows.number(3)};
+    // A gain that is not a number is stored as NULL; the exposure alone would be half a truth.
+    if (!rows.is_null(4) && !rows.is_null(5)) discard.reported = CameraSettings{rows.number(4), rows.number(5)};
+    discard.cause = rows.bytes(6);
+    discard.utc_ns = rows.integer(7);
+    discards.push_back(std::move(discard));
+  }
+  return discards;
+}
+
+void SessionStore::put_replay_source(const ReplaySource& source) {
+  journal_->database.prepare("INSERT INTO replayed_from VALUES (?, ?)")
+      .with(source.session).with(source.content_sha256).step();
+}
+
+std::optional<ReplaySource> SessionStore::replay_source() const {
+  if (!has_discard_tables(journal_->database)) return std::nullopt;
+  SqliteStatement row = journal_->database.prepare("SELECT session, content_sha256 FROM replayed_from");
+  if (!row.step()) return std::nullopt;
+  return ReplaySource{row.bytes(0), row.bytes(1)};
 }
 
 void SessionStore::log_event(const std::string& level, const std::string& text, std::int64_t utc_ns) {

@@ -1,6 +1,6 @@
 // A session on disk: what was wanted, what was measured, and nothing that is not so.
 //
-//   SESSION/session.db   SQLite (WAL, synchronous=FULL): documents, shots, frames, events
+//   SESSION/session.db   SQLite (WAL, synchronous=FULL): documents, shots, frames, discarded attempts, events
 //   SESSION/frames/      one immutable file per frame
 //   SESSION/derived/     everything computed; may be deleted at any time
 //
@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,6 +39,22 @@ struct FrameRecord : NewFrame {
   std::int64_t id = 0;
   std::string sha256;  // lower-case hex of the file's bytes
   std::int64_t bytes = 0;
+};
+
+// An attempt at a shot that gave no frame to keep.
+struct DiscardRecord {
+  std::int64_t shot_id = 0;
+  int attempt = 1;  // 1, 2, … of one call of Camera::shoot; begins anew when the shot is tried in a later run
+  CameraSettings asked;
+  std::optional<CameraSettings> reported;  // empty where no frame came
+  std::string cause;
+  std::int64_t utc_ns = 0;
+};
+
+// The session that another one is a replay of.
+struct ReplaySource {
+  std::string session;  // its folder, absolute
+  std::string content_sha256;
 };
 
 struct SessionEvent {
@@ -81,6 +98,13 @@ class SessionStore {
   // Throws StorageFull, or Error if the shot already has a frame.
   FrameRecord commit_frame(const NewFrame& frame, std::string_view bytes);
   std::vector<FrameRecord> frames() const;  // in order of id
+
+  void log_discard(const DiscardRecord& discard);
+  std::vector<DiscardRecord> discards() const;  // in the order in which they happened
+
+  // Not part of the content: a replay of everything has the content of its source.
+  void put_replay_source(const ReplaySource& source);
+  std::optional<ReplaySource> replay_source() const;
 
   void log_event(const std::string& level, const std::string& text, std::int64_t utc_ns);
   std::vector<SessionEvent> events() const;

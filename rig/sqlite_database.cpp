@@ -83,6 +83,9 @@ void SqliteStatement::reset() {
   bound_ = 0;
 }
 
+bool SqliteStatement::is_null(int column) const {
+  return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL;
+}
 std::int64_t SqliteStatement::integer(int column) const { return sqlite3_column_int64(statement_.get(), column); }
 double SqliteStatement::number(int column) const { return sqlite3_column_double(statement_.get(), column); }
 

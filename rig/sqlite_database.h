@@ -27,6 +27,7 @@ class SqliteStatement {
   bool step();  // true: there is a row; false: done
   void reset();  // ready to be bound and stepped again
 
+  bool is_null(int column) const;
   std::int64_t integer(int column) const;
   double number(int column) const;
   std::string bytes(int column) const;  // of text or blob

@@ -31,9 +31,11 @@ using CommandAction = std::function<CommandResult(CommandContext&)>;
 // Each declares its subcommand on `app` and, when the user chose it, sets `action`.
 void add_commission_command(CLI::App& app, CommandAction& action);
 void add_plan_command(CLI::App& app, CommandAction& action);
+void add_simulate_command(CLI::App& app, CommandAction& action);
 void add_capture_command(CLI::App& app, CommandAction& action);
 void add_resume_command(CLI::App& app, CommandAction& action);
 void add_verify_command(CLI::App& app, CommandAction& action);
+void add_replay_command(CLI::App& app, CommandAction& action);
 void add_import_command(CLI::App& app, CommandAction& action);
 void add_calibrate_command(CLI::App& app, CommandAction& action);
 void add_fit_command(CLI::App& app, CommandAction& action);

@@ -3,7 +3,9 @@
 #include "drivers/error.h"
 #include "rig/console/capture_result.h"
 #include "rig/console/command.h"
+#include "rig/console/replay_result.h"
 #include "rig/console/rig_backend.h"
+#include "rig/replay_session.h"
 #include "rig/sequencer.h"
 
 namespace lumitexel {
@@ -14,6 +16,10 @@ CommandResult run(const std::string& directory, CommandContext& context) {
   if (session.kind() != SessionKind::Captured) {
     throw BadInput(directory, "an imported session has nothing to resume", "a session made by `lumitexel capture`");
   }
+  // Before anything is connected: the rig that a replay's documents name is not the one to move.
+  if (const auto recording = recording_of(session)) {
+    return replay_result(session, play_missing_shots(recording, session, context.progress, context.stop), {});
+  }
   const std::string where = session.document("rig.path");
   RigBackend backend = connect_rig(parse_rig(session.document("rig.toml"), where), where);
   return capture_result(session, take_missing_shots(session, backend.devices, context.progress, context.stop));
@@ -23,7 +29,7 @@ CommandResult run(const std::string& directory, CommandContext& context) {
 
 void add_resume_command(CLI::App& app, CommandAction& action) {
   const auto directory = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("resume", "Go on with a capture that was stopped: take the shots it lacks");
+  CLI::App* command = app.add_subcommand("resume", "Go on with a capture or replay that was stopped: take the shots it lacks");
   command->add_option("SESSION", *directory, "The session's folder")->required();
   command->callback(
       [directory, &action] { action = [directory](CommandContext& context) { return run(*directory, context); }; });

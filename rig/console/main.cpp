@@ -16,9 +16,11 @@ constexpr int kFailed = 1, kBadInput = 2;
 const std::vector<void (*)(CLI::App&, CommandAction&)> kCommands = {
     add_commission_command,
     add_plan_command,
+    add_simulate_command,
     add_capture_command,
     add_resume_command,
     add_verify_command,
+    add_replay_command,
     add_import_command,
     add_calibrate_command,
     add_fit_command,
@@ -29,8 +31,8 @@ const std::vector<void (*)(CLI::App&, CommandAction&)> kCommands = {
 
 // Those that end cleanly on Ctrl-C; the others may be killed at any time and are.
 bool watches_for_stop(const CLI::App& app) {
-  for (const char* name : {"commission", "capture", "resume", "import", "replay", "simulate"}) {
-    if (app.get_subcommand_ptr(name) && app.got_subcommand(name)) return true;
+  for (const char* name : {"commission", "simulate", "capture", "resume", "replay", "import"}) {
+    if (app.got_subcommand(name)) return true;
   }
   return false;
 }

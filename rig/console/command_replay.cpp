@@ -1,0 +1,65 @@
+#include <memory>
+
+#include "processing/calibration/reduced_import.h"
+#include "rig/console/command.h"
+#include "rig/console/replay_result.h"
+#include "rig/replay_session.h"
+
+namespace lumitexel {
+namespace {
+
+struct ReplayOptions {
+  std::string session, out;
+  SelectionOptions selection;
+};
+
+std::vector<std::string> left_out_names(const ViewSelection& selection) {
+  std::vector<std::string> names = selection.left_out;
+  for (const ShotKind kind : selection.kinds_left_out) names.push_back(std::string("kind=") + to_string(kind));
+  return names;
+}
+
+// No rig took an imported session: its files are copied.
+CommandResult copy_imported(const SessionStore& session, const ReplayOptions& options, CommandContext& context) {
+  const ViewSelection selection = select_views(imported_views(session), options.selection);
+  const std::int64_t frames = copy_import(session, selection, options.out, context.progress, context.stop);
+  CommandResult result;
+  result.json = {{"session", options.out}, {"frames", frames}, {"left_out", left_out_names(selection)}, {"missing", 0}};
+  result.text = options.out + ": " + std::to_string(selection.kept.size()) + " views, " +
+                std::to_string(selection.left_out.size()) + " left out, " + std::to_string(frames) + " files copied\n";
+  return result;
+}
+
+CommandResult run(const ReplayOptions& options, CommandContext& context) {
+  SessionStore::require_new_directory(options.out);
+  const auto recording =
+      std::make_shared<const SessionStore>(SessionStore::open(options.session, OpenMode::ReadOnly));
+  if (recording->kind() == SessionKind::Imported) return copy_imported(*recording, options, context);
+  const ViewSelection selection = select_views(planned_views(*recording), options.selection);
+  SessionStore replay = begin_replay(*recording, selection, options.out);
+  const ReplaySummary summary = play_missing_shots(recording, replay, context.progress, context.stop);
+  return replay_result(replay, summary, left_out_names(selection));
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& app, CommandAction& action) {
+  const auto options = std::make_shared<ReplayOptions>();
+  CLI::App* command = app.add_subcommand(
+      "replay", "Play a recorded session back into a new one, all of it or with views left out");
+  command->add_option("SESSION", options->session, "The recorded session's folder")->required();
+  command->add_option("--out", options->out, "The new session's folder: empty or not there yet")->required();
+  command->add_option("--without", options->selection.without,
+                      "What to leave out: view=NAME, view=INDEX (from 0 in the plan's order), views=FIRST..LAST, "
+                      "several by commas, or kind=dark and other kinds of shot; may be given again")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_option("--only", options->selection.only,
+                      "Which views to keep, in the same words; may be given again. Gray card and darks always stay")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->callback(
+      [options, &action] { action = [options](CommandContext& context) { return run(*options, context); }; });
+}
+
+}  // namespace lumitexel

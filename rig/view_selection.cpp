@@ -1,0 +1,124 @@
+#include "rig/view_selection.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <optional>
+
+#include "drivers/error.h"
+
+namespace lumitexel {
+namespace {
+
+using Indices = std::set<std::size_t>;
+
+std::string listed(const std::vector<SelectableView>& views) {
+  std::string text;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    text += (i == 0 ? "" : ", ") + std::to_string(i) + " " + views[i].name + (views[i].heldout ? " (held out)" : "");
+  }
+  return text;
+}
+
+std::optional<std::size_t> whole_number(std::string_view text) {
+  std::size_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+std::vector<std::string> items_of(std::string_view list) {
+  std::vector<std::string> items;
+  for (std::size_t start = 0; start <= list.size();) {
+    const std::size_t end = std::min(list.find(',', start), list.size());
+    items.emplace_back(list.substr(start, end - start));
+    start = end + 1;
+  }
+  return items;
+}
+
+// One option's value, taken apart.
+class Reader {
+ public:
+  Reader(const std::string& option, const std::string& value, const std::vector<SelectableView>& views)
+      : option_(option), value_(value), views_(views) {}
+
+  void read(Indices& indices, std::set<ShotKind>* kinds) const {
+    const std::size_t equals = value_.find('=');
+    const std::string key = value_.substr(0, equals);
+    const bool of_views = key == "view" || key == "views", of_kinds = kinds != nullptr && key == "kind";
+    if (equals == std::string::npos || (!of_views && !of_kinds)) {
+      fail("'" + value_ + "'", std::string("view=NAME, view=INDEX or views=FIRST..LAST") +
+                                   (kinds != nullptr ? ", or kind=KIND" : ""));
+    }
+    for (const std::string& item : items_of(std::string_view(value_).substr(equals + 1))) {
+      if (of_views) {
+        add_views(item, indices);
+      } else {
+        kinds->insert(kind_of(item));
+      }
+    }
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what, const std::string& expected) const {
+    throw BadInput(option_, what, expected);
+  }
+
+  std::optional<std::size_t> named(const std::string& item) const {
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+      if (views_[i].name == item || std::filesystem::path(views_[i].name).stem() == item) return i;
+    }
+    return std::nullopt;
+  }
+
+  void add_views(const std::string& item, Indices& indices) const {
+    if (const auto index = named(item)) {
+      indices.insert(*index);
+      return;
+    }
+    const std::size_t dots = item.find("..");
+    const auto first = whole_number(item.substr(0, dots));
+    const auto last = dots == std::string::npos ? first : whole_number(item.substr(dots + 2));
+    if (!first || !last || *first > *last || *last >= views_.size()) {
+      fail("no view '" + item + "'", "one of " + listed(views_));
+    }
+    for (std::size_t i = *first; i <= *last; ++i) indices.insert(i);
+  }
+
+  ShotKind kind_of(const std::string& item) const {
+    try {
+      return shot_kind_from_string(item);
+    } catch (const Corrupt&) {
+      fail("no kind '" + item + "'", "silhouette, spheres_ring, spheres_point, object, gray_card or dark");
+    }
+  }
+
+  const std::string& option_;
+  const std::string& value_;
+  const std::vector<SelectableView>& views_;
+};
+
+}  // namespace
+
+ViewSelection select_views(const std::vector<SelectableView>& views, const SelectionOptions& options) {
+  ViewSelection selection;
+  Indices only, without;
+  const std::string only_name = "--only", without_name = "--without";
+  for (const std::string& value : options.only) Reader(only_name, value, views).read(only, nullptr);
+  for (const std::string& value : options.without) {
+    Reader(without_name, value, views).read(without, &selection.kinds_left_out);
+  }
+  bool any_fit = false;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const bool kept = (options.only.empty() || only.contains(i)) && !without.contains(i);
+    (kept ? selection.kept : selection.left_out).push_back(views[i].name);
+    any_fit = any_fit || (kept && !views[i].heldout);
+  }
+  if (!any_fit) {
+    throw BadInput("--without and --only", "no view to fit is left", "at least one that is not held out of " + listed(views));
+  }
+  return selection;
+}
+
+}  // namespace lumitexel
