@@ -43,11 +43,10 @@ SessionContent content_for(const SessionStore& recording, const ViewSelection& s
   return content;
 }
 
-std::string left_out_text(const ViewSelection& selection) {
-  std::string text;
-  for (const std::string& view : selection.left_out) text += " " + view;
-  for (const ShotKind kind : selection.kinds_left_out) text += std::string(" kind=") + to_string(kind);
-  return text.empty() ? "" : "; left out:" + text;
+std::set<ShotKind> kinds_in(const SessionStore& session) {
+  std::set<ShotKind> kinds;
+  for (const Shot& shot : session.shots()) kinds.insert(shot.kind);
+  return kinds;
 }
 
 // Whether a run that failed did so as it was recorded: by its last shoot, which gave no frame then either.
@@ -95,10 +94,10 @@ SessionStore begin_replay(const SessionStore& recording, const ViewSelection& se
   }
   const SessionContent content = content_for(recording, selection);
   SessionStore replay = begin_session(directory, content);
-  replay.log_event("info",
-                   "replay of " + content.replayed_from->session + ", content " + content.replayed_from->content_sha256 +
-                       left_out_text(selection),
-                   SystemClock().utc_ns());
+  std::string text = "replay of " + content.replayed_from->session + ", content " + content.replayed_from->content_sha256;
+  const std::vector<std::string> left_out = left_out_of(recording, replay);
+  for (std::size_t i = 0; i < left_out.size(); ++i) text += (i == 0 ? ", without " : ", ") + left_out[i];
+  replay.log_event("info", text, SystemClock().utc_ns());
   return replay;
 }
 
@@ -116,6 +115,20 @@ std::shared_ptr<const SessionStore> recording_of(const SessionStore& replay) {
     throw BadInput(place, "that session has changed since", "the recording as it was; begin a new replay");
   }
   return recording;
+}
+
+std::vector<std::string> left_out_of(const SessionStore& recording, const SessionStore& replay) {
+  std::set<std::string> kept;
+  for (const SelectableView& view : planned_views(replay)) kept.insert(view.name);
+  std::vector<std::string> left_out;
+  for (const SelectableView& view : planned_views(recording)) {
+    if (!kept.contains(view.name)) left_out.push_back(view.name);
+  }
+  const std::set<ShotKind> kinds = kinds_in(replay);
+  for (const ShotKind kind : kinds_in(recording)) {
+    if (!kinds.contains(kind)) left_out.push_back(std::string("kind=") + to_string(kind));
+  }
+  return left_out;
 }
 
 ReplaySummary play_missing_shots(const std::shared_ptr<const SessionStore>& recording, SessionStore& replay,

@@ -23,6 +23,9 @@ SessionStore begin_replay(const SessionStore& recording, const ViewSelection& se
 // has been moved or its content has changed since.
 std::shared_ptr<const SessionStore> recording_of(const SessionStore& replay);
 
+// What the recording has and the replay left out: views by name, kinds of shots as "kind=dark".
+std::vector<std::string> left_out_of(const SessionStore& recording, const SessionStore& replay);
+
 struct ReplaySummary {
   std::int64_t frames = 0;    // played now
   std::int64_t discards = 0;  // attempts that failed in the recording, and now again

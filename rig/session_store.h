@@ -55,6 +55,7 @@ struct DiscardRecord {
 struct ReplaySource {
   std::string session;  // its folder, absolute
   std::string content_sha256;
+  bool operator==(const ReplaySource&) const = default;
 };
 
 struct SessionEvent {

@@ -13,18 +13,12 @@ struct ReplayOptions {
   SelectionOptions selection;
 };
 
-std::vector<std::string> left_out_names(const ViewSelection& selection) {
-  std::vector<std::string> names = selection.left_out;
-  for (const ShotKind kind : selection.kinds_left_out) names.push_back(std::string("kind=") + to_string(kind));
-  return names;
-}
-
 // No rig took an imported session: its files are copied.
 CommandResult copy_imported(const SessionStore& session, const ReplayOptions& options, CommandContext& context) {
   const ViewSelection selection = select_views(imported_views(session), options.selection);
   const std::int64_t frames = copy_import(session, selection, options.out, context.progress, context.stop);
   CommandResult result;
-  result.json = {{"session", options.out}, {"frames", frames}, {"left_out", left_out_names(selection)}, {"missing", 0}};
+  result.json = {{"session", options.out}, {"frames", frames}, {"left_out", selection.left_out}, {"missing", 0}};
   result.text = options.out + ": " + std::to_string(selection.kept.size()) + " views, " +
                 std::to_string(selection.left_out.size()) + " left out, " + std::to_string(frames) + " files copied\n";
   return result;
@@ -38,7 +32,7 @@ CommandResult run(const ReplayOptions& options, CommandContext& context) {
   const ViewSelection selection = select_views(planned_views(*recording), options.selection);
   SessionStore replay = begin_replay(*recording, selection, options.out);
   const ReplaySummary summary = play_missing_shots(recording, replay, context.progress, context.stop);
-  return replay_result(replay, summary, left_out_names(selection));
+  return replay_result(*recording, replay, summary);
 }
 
 }  // namespace

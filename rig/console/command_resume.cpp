@@ -18,7 +18,8 @@ CommandResult run(const std::string& directory, CommandContext& context) {
   }
   // Before anything is connected: the rig that a replay's documents name is not the one to move.
   if (const auto recording = recording_of(session)) {
-    return replay_result(session, play_missing_shots(recording, session, context.progress, context.stop), {});
+    const ReplaySummary summary = play_missing_shots(recording, session, context.progress, context.stop);
+    return replay_result(*recording, session, summary);
   }
   const std::string where = session.document("rig.path");
   RigBackend backend = connect_rig(parse_rig(session.document("rig.toml"), where), where);

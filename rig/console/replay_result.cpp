@@ -1,5 +1,6 @@
 #include "rig/console/replay_result.h"
 
+#include <algorithm>
 #include <sstream>
 
 #include "rig/console/duration_text.h"
@@ -20,8 +21,8 @@ void describe_missing(const std::vector<Shot>& missing, std::ostream& text) {
 
 }  // namespace
 
-CommandResult replay_result(const SessionStore& replay, const ReplaySummary& summary,
-                            const std::vector<std::string>& left_out) {
+CommandResult replay_result(const SessionStore& recording, const SessionStore& replay, const ReplaySummary& summary) {
+  const std::vector<std::string> left_out = left_out_of(recording, replay);
   const std::vector<Shot> missing = replay.missing_shots();
   const std::size_t frames = replay.frames().size();
   CommandResult result;
@@ -37,7 +38,7 @@ CommandResult replay_result(const SessionStore& replay, const ReplaySummary& sum
        << " of them played now, which took " << duration_text(summary.seconds) << " when they were recorded\n";
   if (summary.discards > 0) text << summary.discards << " attempts failed as they did then\n";
   for (std::size_t i = 0; i < left_out.size(); ++i) text << (i == 0 ? "left out: " : ", ") << left_out[i];
-  if (!left_out.empty()) text << "\n";
+  text << (left_out.empty() ? "" : "\n");
   describe_missing(missing, text);
   result.text = text.str();
   return result;

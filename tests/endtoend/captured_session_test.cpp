@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "tests/endtoend/run_program.h"
@@ -45,6 +46,46 @@ void capture_through_a_kill(const std::string& rig, const std::string& session) 
   }
 }
 
+std::map<std::string, std::string> frames_of(const std::filesystem::path& session) {
+  std::map<std::string, std::string> frames;
+  for (const auto& entry : std::filesystem::directory_iterator(session / "frames")) {
+    frames[entry.path().filename().string()] = text_of(entry.path());
+  }
+  return frames;
+}
+
+// Played back whole, by the command and as a rig of its own, a session is the same; a shorter one is a session, too.
+void expect_replays(const TemporaryFolder& folder, const std::string& session, const std::string& rig) {
+  const auto frames = frames_of(session);
+  const ProgramRun whole = run_program("replay " + session + " --out " + (folder / "whole").string() + " --json");
+  ASSERT_EQ(whole.exit_code, 0) << whole.errors;
+  EXPECT_EQ(whole.json().at("frames"), frames.size());
+  EXPECT_EQ(whole.json().at("missing"), 0);
+  EXPECT_TRUE(frames_of(folder / "whole") == frames);
+
+  std::ofstream(folder / "recorded.toml")
+      << "base = \"bench.toml\"\nbackend = \"recorded\"\n[recorded]\nsession = \"session\"\n";
+  const ProgramRun capture = run_program("capture " + (folder / "recorded.toml").string() + rig.substr(rig.find(' ')) +
+                                         " --out " + (folder / "again").string());
+  ASSERT_EQ(capture.exit_code, 0) << capture.errors;
+  EXPECT_TRUE(frames_of(folder / "again") == frames);
+
+  const std::string shorter = (folder / "shorter").string();
+  const ProgramRun replay = run_program("replay " + session + " --out " + shorter + " --without view=8 --json");
+  ASSERT_EQ(replay.exit_code, 0) << replay.errors;
+  EXPECT_EQ(replay.json().at("left_out"), nlohmann::json{"fit_007"});
+  for (const std::string& command : {"verify " + shorter, "calibrate " + shorter,
+                                     "fit " + shorter + " --out " + shorter + "_model --quality draft --materials 2",
+                                     "evaluate " + shorter + "_model " + shorter}) {
+    const ProgramRun run = run_program(command);
+    EXPECT_EQ(run.exit_code, 0) << command << '\n' << run.errors;
+  }
+  const ProgramRun unknown = run_program("replay " + session + " --out " + shorter + "2 --without view=99");
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_NE(unknown.errors.find("7 heldout_000 (held out)"), std::string::npos) << unknown.errors;
+  EXPECT_FALSE(std::filesystem::exists(shorter + "2"));
+}
+
 TEST(CapturedSession, BecomesAModelThatPredictsAHeldOutPhotograph) {
   const TemporaryFolder folder;
   std::ofstream(folder / "bench.toml") << half_bench();
@@ -81,6 +122,8 @@ TEST(CapturedSession, BecomesAModelThatPredictsAHeldOutPhotograph) {
   const auto error = [&](const char* stage) { return heldout.at(stage).at("relative_rms").get<double>(); };
   EXPECT_LT(error("cluster"), 0.9 * error("single"));
   EXPECT_LT(error("projection"), 1.02 * error("cluster"));  // one photograph: equal within what a few pixels decide
+
+  expect_replays(folder, session, rig);
 
   const ProgramRun report = run_program("report " + model + " --session " + session);
   ASSERT_EQ(report.exit_code, 0) << report.errors;

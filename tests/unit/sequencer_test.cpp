@@ -108,6 +108,29 @@ TEST_F(SequencerTest, AFrameWithOtherSettingsIsDiscardedAndShotAgain) {
   EXPECT_NE(frame.samples, std::vector<std::uint16_t>(24, 0));
 }
 
+TEST_F(SequencerTest, EveryAttemptThatCameToNothingIsInTheJournal) {
+  bench_->before_exposure = [&] {
+    if (bench_->frames == 6) ++bench_->frames, throw Timeout("fake camera: late");
+    if (bench_->frames >= 9) throw Disconnected("fake camera: unplugged");
+  };
+  bench_->tamper = [&](Frame& frame) {
+    if (bench_->frames == 3) frame.reported.exposure_s *= 2;
+  };
+  EXPECT_THROW(run(), Disconnected);
+  const std::vector<DiscardRecord> discards = store_.discards();
+  ASSERT_EQ(discards.size(), 5u);
+  EXPECT_EQ(discards[0].shot_id, 3);
+  EXPECT_EQ(discards[0].asked, shots_[2].camera);
+  EXPECT_EQ(discards[0].reported, (CameraSettings{2 * shots_[2].camera.exposure_s, shots_[2].camera.gain_db}));
+  EXPECT_EQ(discards[1].shot_id, 6);
+  EXPECT_EQ(discards[1].cause, "fake camera: late");
+  EXPECT_EQ(discards[1].reported, std::nullopt);
+  for (int attempt = 1; attempt <= 3; ++attempt) {  // the last one, too, that ended the run
+    EXPECT_EQ(discards[static_cast<std::size_t>(attempt) + 1].shot_id, 8);
+    EXPECT_EQ(discards[static_cast<std::size_t>(attempt) + 1].attempt, attempt);
+  }
+}
+
 TEST_F(SequencerTest, ACameraThatAlwaysReportsOtherSettingsIsAtFault) {
   bench_->tamper = [](Frame& frame) { frame.reported.gain_db += 1; };
   EXPECT_THROW(run(), Protocol);

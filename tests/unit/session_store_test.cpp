@@ -179,6 +179,50 @@ TEST(SessionStore, WhatIsNoSessionIsRefused) {
   EXPECT_THROW(SessionStore::open(folder / "newer", OpenMode::ReadWrite), Corrupt);
 }
 
+TEST(SessionStore, DiscardsComeBackAndAreNotContent) {
+  const TemporaryFolder folder;
+  SessionStore store = SessionStore::create(folder / "s", SessionKind::Captured);
+  store.put_shots(two_shots());
+  const std::string content = store.content_sha256();
+  store.log_discard({2, 1, {0.25, 1.0}, CameraSettings{0.1 + 0.2, 2.0}, "late", 42});
+  store.log_discard({2, 2, {0.25, 1.0}, std::nullopt, "unplugged", 43});
+  EXPECT_THROW(store.log_discard({77, 1, {0.25, 1.0}, std::nullopt, "no such shot", 44}), Error);
+  const std::vector<DiscardRecord> discards = store.discards();
+  ASSERT_EQ(discards.size(), 2u);
+  EXPECT_EQ(discards[0].shot_id, 2);
+  EXPECT_EQ(discards[0].attempt, 1);
+  EXPECT_EQ(discards[0].asked, (CameraSettings{0.25, 1.0}));
+  EXPECT_EQ(discards[0].reported, (CameraSettings{0.1 + 0.2, 2.0}));
+  EXPECT_EQ(discards[0].cause, "late");
+  EXPECT_EQ(discards[0].utc_ns, 42);
+  EXPECT_EQ(discards[1].attempt, 2);
+  EXPECT_EQ(discards[1].reported, std::nullopt);
+  EXPECT_EQ(store.content_sha256(), content);
+}
+
+TEST(SessionStore, OneOfTheFirstVersionIsReadAsItIsAndUpgradedByWriters) {
+  const TemporaryFolder folder;
+  {
+    SessionStore store = SessionStore::create(folder / "s", SessionKind::Captured);
+    store.put_shots(two_shots());
+    store.commit_frame(frame_for(two_shots()[0]), "kept");
+  }
+  SqliteDatabase(folder / "s" / "session.db", DatabaseMode::ReadWrite)
+      .run("DROP TABLE discards; DROP TABLE replayed_from; PRAGMA user_version = 1");
+  std::string content;
+  {
+    const SessionStore store = SessionStore::open(folder / "s", OpenMode::ReadOnly);
+    EXPECT_TRUE(store.discards().empty());
+    EXPECT_EQ(store.replay_source(), std::nullopt);
+    EXPECT_EQ(store.frames().size(), 1u);
+    content = store.content_sha256();
+  }
+  SessionStore store = SessionStore::open(folder / "s", OpenMode::ReadWrite);
+  store.log_discard({2, 1, {0.25, 1.0}, std::nullopt, "late", 42});
+  EXPECT_EQ(store.discards().size(), 1u);
+  EXPECT_EQ(store.content_sha256(), content);
+}
+
 TEST(SessionStore, AFullJournalSaysSo) {
   const TemporaryFolder folder;
   SqliteDatabase database(folder / "a.db", DatabaseMode::Create);
