@@ -100,6 +100,12 @@ TomlTable TomlTable::parse(const std::string& text, const std::string& where) {
 
 bool TomlTable::has(const std::string& key) const { return node_->table->contains(key); }
 
+std::vector<std::string> TomlTable::keys() const {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : *node_->table) keys.emplace_back(key.str());
+  return keys;
+}
+
 double TomlTable::number(const std::string& key, const NumberRange& range) const {
   const toml::node& found = node_->require(key, range.text);
   if (!found.is_number() || !allowed(*found.value<double>(), range)) reject(key, shown(found), range.text);

@@ -29,6 +29,7 @@ class TomlTable {
   static TomlTable parse(const std::string& text, const std::string& where);
 
   bool has(const std::string& key) const;
+  std::vector<std::string> keys() const;  // in alphabetical order; does not count them as read
   double number(const std::string& key, const NumberRange& range) const;
   int integer(const std::string& key, int min, int max) const;
   std::string string(const std::string& key) const;  // never empty

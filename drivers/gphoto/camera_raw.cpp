@@ -20,6 +20,18 @@ void require(int libraw_code, const std::string& where) {
   if (libraw_code != LIBRAW_SUCCESS) fail(where, libraw_strerror(libraw_code));
 }
 
+// LibRaw's own stream counts an item of which only a part is left as read.
+class StrictStream final : public LibRaw_buffer_datastream {
+ public:
+  explicit StrictStream(std::span<const std::uint8_t> bytes)  // which are not written to
+      : LibRaw_buffer_datastream(const_cast<std::uint8_t*>(bytes.data()), bytes.size()) {}
+  int read(void* into, std::size_t size, std::size_t count) override {
+    const INT64 start = tell();
+    LibRaw_buffer_datastream::read(into, size, count);
+    return size == 0 ? 0 : static_cast<int>(static_cast<std::size_t>(tell() - start) / size);
+  }
+};
+
 void take_tag(void* tags, int tag, int type, int count, unsigned order, void* stream, INT64) {
   auto* file = static_cast<LibRaw_abstract_datastream*>(stream);
   static_cast<ExifTags*>(tags)->take(tag, type, count, order == 0x4949, [file](std::span<std::uint8_t> into) {
@@ -95,13 +107,13 @@ CameraRawExif exif_of(const LibRaw& raw, const ExifTags& tags) {
 
 CameraRaw decode_camera_raw(std::span<const std::uint8_t> bytes, const std::string& where) {
   if (bytes.empty()) fail(where, "it is empty");
+  StrictStream stream(bytes);
   const auto raw = std::make_unique<LibRaw>();  // some hundred kilobytes
   ExifTags tags;
   bool data_error = false;
   raw->set_exifparser_handler(take_tag, &tags);
   raw->set_dataerror_handler(note_data_error, &data_error);
-  // LibRaw asks for a writable buffer and does not write.
-  require(raw->open_buffer(const_cast<std::uint8_t*>(bytes.data()), bytes.size()), where);
+  require(raw->open_datastream(&stream), where);
   require(raw->unpack(), where);
   if (data_error) fail(where, "its data end too early");
   CameraRaw out;

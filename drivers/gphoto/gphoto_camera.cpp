@@ -45,16 +45,10 @@ GphotoCamera::GphotoCamera(const GphotoConnection& connection, const CameraLimit
       limits_(limits),
       clock_(clock),
       remote_(name_, connection, worker, clock) {
-  connect({});
+  remote_.connect({});
 }
 
-void GphotoCamera::connect(std::stop_token stop) {
-  remote_.connect(stop);
-  exposure_choices_ = remote_.choices(connection_.exposure_setting, stop);
-  gain_choices_ = remote_.choices(connection_.gain_setting, stop);
-}
-
-void GphotoCamera::recover(std::stop_token stop) { connect(stop); }
+void GphotoCamera::recover(std::stop_token stop) { remote_.connect(stop); }
 
 double GphotoCamera::iso_of(double gain_db) const { return connection_.iso_at_0_db * std::pow(10.0, gain_db / 20.0); }
 double GphotoCamera::gain_db_of(double iso) const { return 20.0 * std::log10(iso / connection_.iso_at_0_db); }
@@ -74,12 +68,12 @@ double GphotoCamera::select(const std::string& setting, const std::vector<std::s
 }
 
 CameraSettings GphotoCamera::arm(const CameraSettings& settings, std::stop_token stop) {
-  if (!remote_.is_connected()) connect(stop);
+  if (!remote_.is_connected()) remote_.connect(stop);
   armed_ = settings;
   const double wanted_iso = iso_of(settings.gain_db);
   const double exposure_s =
-      select(connection_.exposure_setting, exposure_choices_, parse_exposure_s, settings.exposure_s, stop);
-  const double iso = select(connection_.gain_setting, gain_choices_, parse_iso, wanted_iso, stop);
+      select(connection_.exposure_setting, remote_.exposure_choices(), parse_exposure_s, settings.exposure_s, stop);
+  const double iso = select(connection_.gain_setting, remote_.gain_choices(), parse_iso, wanted_iso, stop);
   return {exposure_s, iso == wanted_iso ? settings.gain_db : gain_db_of(iso)};
 }
 
@@ -102,7 +96,7 @@ Frame GphotoCamera::trigger(std::uint64_t frame_key, std::stop_token stop) {
   frame.reported = reported_by(raw, picture.file);
   frame.device_time_s = last_time_s_ = time_of(raw);
   frame.sensor_temperature_c = raw.exif.temperature_c.value_or(0.0);
-  frame.device_frame_id = raw.exif.image_number.value_or(hash_of(picture.bytes));
+  frame.device_frame_id = raw.exif.image_number ? *raw.exif.image_number : hash_of(picture.bytes);
   frame.echoed_key = key_in(raw, picture.file);
   frame.samples = std::move(raw.samples);
   frame.camera_file = std::move(picture.bytes);

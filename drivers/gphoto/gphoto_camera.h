@@ -50,7 +50,6 @@ class GphotoCamera final : public Camera {
   void recover(std::stop_token stop) override;
 
  private:
-  void connect(std::stop_token stop);
   double iso_of(double gain_db) const;
   double gain_db_of(double iso) const;
   double select(const std::string& setting, const std::vector<std::string>& choices,
@@ -65,7 +64,6 @@ class GphotoCamera final : public Camera {
   CameraLimits limits_;
   std::shared_ptr<Clock> clock_;
   RemoteCamera remote_;
-  std::vector<std::string> exposure_choices_, gain_choices_;
   CameraSettings armed_;
   double last_time_s_ = 0.0;
 };

@@ -76,10 +76,14 @@ void RemoteCamera::try_to_connect(std::stop_token stop) {
     connected_ = false;
     throw Protocol(name_ + ": '" + setting + "' set to '" + value + "', reads back '" + read_back + "'");
   }
+  exposure_choices_ = choices(connection_.exposure_setting, stop);
+  gain_choices_ = choices(connection_.gain_setting, stop);
 }
 
 std::vector<std::string> RemoteCamera::choices(const std::string& setting, std::stop_token stop) {
-  return ask({{{"verb", "choices"}, {"name", setting}}, {}, {}}, connection_.answer_timeout_s, stop).texts;
+  auto texts = ask({{{"verb", "choices"}, {"name", setting}}, {}, {}}, connection_.answer_timeout_s, stop).texts;
+  if (!texts.empty()) return texts;
+  throw Protocol(name_ + ": '" + setting + "' has no choices; is the camera set to manual exposure?");
 }
 
 std::string RemoteCamera::set(const std::string& setting, const std::string& value, std::stop_token stop) {

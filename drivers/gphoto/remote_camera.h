@@ -24,13 +24,15 @@ class RemoteCamera {
  public:
   RemoteCamera(std::string name, GphotoConnection connection, std::filesystem::path worker, std::shared_ptr<Clock> clock);
 
-  // A new worker, a new connection, the fixed settings made and read back. Tries again until reconnect_timeout_s have
-  // passed, then throws Disconnected. Throws OutOfRange at once for a model or a port that libgphoto2 does not know.
+  // A new worker, a new connection, the fixed settings made and read back, the dials' choices read. Tries again until
+  // reconnect_timeout_s have passed, then throws Disconnected. Throws OutOfRange at once for a model or a port that libgphoto2 does not know.
   void connect(std::stop_token stop);
   bool is_connected() const { return connected_ && process_.is_running(); }
   void disconnect() noexcept;
 
-  std::vector<std::string> choices(const std::string& setting, std::stop_token stop);
+  // As they were on connecting; never empty then.
+  const std::vector<std::string>& exposure_choices() const { return exposure_choices_; }
+  const std::vector<std::string>& gain_choices() const { return gain_choices_; }
   // Sets it unless it is so already; returns what it reads back.
   std::string set(const std::string& setting, const std::string& value, std::stop_token stop);
   // Takes a picture, fetches it and deletes it on the card. A picture that cannot be deleted is a picture all the same.
@@ -41,6 +43,7 @@ class RemoteCamera {
  private:
   WorkerMessage ask(WorkerMessage request, double timeout_s, std::stop_token stop);
   void try_to_connect(std::stop_token stop);
+  std::vector<std::string> choices(const std::string& setting, std::stop_token stop);
   void require_time_left(double deadline_s, const std::string& last_failure) const;
 
   std::string name_;
@@ -48,6 +51,7 @@ class RemoteCamera {
   std::shared_ptr<Clock> clock_;
   GphotoProcess process_;
   bool connected_ = false;
+  std::vector<std::string> exposure_choices_, gain_choices_;
 };
 
 }  // namespace lumitexel
