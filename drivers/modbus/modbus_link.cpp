@@ -103,9 +103,18 @@ bool ModbusLink::write_urgently(const std::vector<ModbusWrite>& writes, double t
     if (all_written(writes, timeout_s)) return true;
     // All of them again, not only those that seem to have failed: on a serial line one write's late acknowledgement
     // looks like the next one's. Exceptions leave the connection as it is.
+    find_again(timeout_s);
     return all_written(again.empty() ? writes : again, timeout_s);
   } catch (...) {
     return false;
+  }
+}
+
+// A serial adapter that lost its contact takes some time to appear again.
+void ModbusLink::find_again(double timeout_s) {
+  constexpr int kLooks = 3;
+  for (int look = 0; look < kLooks && make_ready(timeout_s).kind == Kind::Broken; ++look) {
+    clock_->sleep_until(clock_->now_s() + 0.5 * timeout_s, {});
   }
 }
 

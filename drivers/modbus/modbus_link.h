@@ -53,9 +53,10 @@ class ModbusLink {
   void write(const ModbusRegister& where, double value, const std::string& what, std::stop_token stop = {});
 
   // For stopping things: goes before all other requests, and gives every write two chances, the second after a
-  // reconnection, each ending after timeout_s. True if all were acknowledged at one of
+  // reconnection, each ending after timeout_s; a port that is gone is looked for
+  // a few times more. True if all were acknowledged at one of
   // them. A write that fails does not keep the
-  // others from being sent. Takes at most (writes + again + 16) * timeout_s, 14 of them on serial lines only, and another thread's request that is under way
+  // others from being sent. Takes at most (writes + again + 32) * timeout_s, 24 of them on serial lines only, and another thread's request that is under way
   // (response_timeout_s, or 6 of them while it falls in step on a serial line).
   // again: what is written at the second chance, if it shall be split otherwise; empty: the same.
   bool write_urgently(const std::vector<ModbusWrite>& writes, double timeout_s,
@@ -67,6 +68,7 @@ class ModbusLink {
   using Request = std::function<WireAnswer(ModbusWire&, double timeout_s)>;
   WireAnswer attempt(const Request& request);
   WireAnswer make_ready(double timeout_s);
+  void find_again(double timeout_s);
   void settle(const WireAnswer& answer);
   void exchange(const std::string& asked, const Request& request, std::stop_token stop);
   [[noreturn]] void give_up(const std::string& asked, const WireAnswer& answer);

@@ -34,6 +34,7 @@ TEST_P(Safety, MakesEverythingSafeInFewRequests) {
   EXPECT_EQ(safety->axes_without_stop(), 0);
   set_going(bench);
   ASSERT_FALSE(is_safe(bench));
+  ASSERT_TRUE(safety->kick_watchdog());  // so that its connection has been accepted
   const std::uint64_t before = bench.faults->operations("controller");
   EXPECT_TRUE(safety->make_safe());
   EXPECT_TRUE(is_safe(bench));
