@@ -1,0 +1,121 @@
+#include "drivers/aravis/aravis_device.h"
+
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "drivers/error.h"
+
+namespace lumitexel {
+namespace {
+
+bool is_ip_address(const std::string& address) {
+  in_addr parsed;
+  return inet_pton(AF_INET, address.c_str(), &parsed) == 1;
+}
+
+// The address of ours that packets to this device leave from: routing decides, nothing is sent. Asking the routing
+// table instead of broadcasting finds the right one of several interfaces, and at once.
+std::string own_address_towards(const std::string& device_address, const std::string& name) {
+  sockaddr_in device{}, own{};
+  device.sin_family = AF_INET;
+  device.sin_port = htons(3956);
+  inet_pton(AF_INET, device_address.c_str(), &device.sin_addr);
+  socklen_t length = sizeof own;
+  const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const bool routed = probe >= 0 && connect(probe, reinterpret_cast<const sockaddr*>(&device), sizeof device) == 0 &&
+                      getsockname(probe, reinterpret_cast<sockaddr*>(&own), &length) == 0;
+  if (probe >= 0) close(probe);
+  if (!routed) throw Disconnected(name + ": connecting: no network interface leads to " + device_address);
+  char text[INET_ADDRSTRLEN] = {};
+  inet_ntop(AF_INET, &own.sin_addr, text, sizeof text);
+  return text;
+}
+
+GHandle<ArvCamera> open_gige(const std::string& address, const std::string& name) {
+  const GHandle<GInetAddress> own(g_inet_address_new_from_string(own_address_towards(address, name).c_str()));
+  const GHandle<GInetAddress> remote(g_inet_address_new_from_string(address.c_str()));
+  GErrorSlot error;
+  const GHandle<ArvDevice> device(arv_gv_device_new(own.get(), remote.get(), error));
+  error.require(name, "connecting");
+  if (!device) throw Disconnected(name + ": connecting: nothing came back");
+  if (!arv_gv_device_is_controller(ARV_GV_DEVICE(device.get()))) {
+    throw Disconnected(name + ": connecting: asked for control, was refused; another program may have it");
+  }
+  GErrorSlot camera_error;
+  GHandle<ArvCamera> camera(arv_camera_new_with_device(device.get(), camera_error));
+  camera_error.require(name, "connecting");
+  return camera;
+}
+
+GHandle<ArvCamera> open_by_id(const std::string& id, const std::string& name) {
+  GErrorSlot error;
+  GHandle<ArvCamera> camera(arv_camera_new(id.c_str(), error));
+  error.require(name, "connecting");
+  return camera;
+}
+
+}  // namespace
+
+AravisDevice::AravisDevice(const std::string& address, std::string name)
+    : name_(std::move(name)), camera_(is_ip_address(address) ? open_gige(address, name_) : open_by_id(address, name_)) {
+  if (!camera_) throw Disconnected(name_ + ": connecting: no such camera");
+  // By default the library accepts any number for any feature.
+  arv_camera_set_range_check_policy(camera(), ARV_RANGE_CHECK_POLICY_ENABLE);
+  signal_ = g_signal_connect(arv_camera_get_device(camera()), "control-lost", G_CALLBACK(on_control_lost),
+                             &control_lost_);
+}
+
+AravisDevice::~AravisDevice() { g_signal_handler_disconnect(arv_camera_get_device(camera()), signal_); }
+
+void AravisDevice::on_control_lost(ArvDevice*, std::atomic<bool>* lost) { *lost = true; }
+
+void AravisDevice::take_control() {
+  if (!is_gige()) return;
+  GErrorSlot error;
+  arv_gv_device_take_control(ARV_GV_DEVICE(arv_camera_get_device(camera())), error);
+  error.require(name_, "taking control");
+  control_lost_ = false;
+}
+
+bool AravisDevice::has(const std::string& feature) const {
+  return call("is there " + feature, arv_camera_is_feature_available, feature.c_str());
+}
+
+std::vector<std::string> AravisDevice::choices(const std::string& feature) const {
+  guint count = 0;
+  GErrorSlot error;
+  const std::unique_ptr<const char*[], GFree> names(
+      arv_camera_dup_available_enumerations_as_strings(camera(), feature.c_str(), &count, error));
+  error.require(name_, "choices of " + feature);
+  return names ? std::vector<std::string>(names.get(), names.get() + count) : std::vector<std::string>{};
+}
+
+std::int64_t AravisDevice::integer(const std::string& feature) const {
+  return call("reading " + feature, arv_camera_get_integer, feature.c_str());
+}
+
+double AravisDevice::real(const std::string& feature) const {
+  return call("reading " + feature, arv_camera_get_float, feature.c_str());
+}
+
+std::string AravisDevice::text(const std::string& feature) const {
+  const char* value = call("reading " + feature, arv_camera_get_string, feature.c_str());
+  return value == nullptr ? "" : value;
+}
+
+void AravisDevice::set(const std::string& feature, std::int64_t value) const {
+  call("setting " + feature + " to " + std::to_string(value), arv_camera_set_integer, feature.c_str(), value);
+}
+
+void AravisDevice::set_verified(const std::string& feature, const std::string& choice) const {
+  call("setting " + feature + " to " + choice, arv_camera_set_string, feature.c_str(), choice.c_str());
+  const std::string now = text(feature);
+  if (now != choice) throw Protocol(name_ + ": set " + feature + " to " + choice + ", it reads back " + now);
+}
+
+void AravisDevice::execute(const std::string& command) const {
+  call("executing " + command, arv_camera_execute_command, command.c_str());
+}
+
+}  // namespace lumitexel
