@@ -6,7 +6,7 @@
 #include <set>
 
 #include "drivers/error.h"
-#include "rig/raw_frame_file.h"
+#include "rig/frame_file.h"
 #include "rig/sequencer.h"
 #include "rig/sha256.h"
 #include "rig/whole_file.h"
@@ -126,9 +126,6 @@ RecordedRun recorded_frames(const SessionStore& recording) {
 
 Frame load_recorded_frame(const SessionStore& recording, const FrameRecord& record) {
   const std::filesystem::path path = recording.frame_path(record);
-  if (path.extension() != ".pgm") {
-    throw Error(path.string() + ": is a camera's raw file; only frames of bare samples (.pgm) can be played back");
-  }
   std::string bytes;
   try {
     bytes = read_whole_file(path);
@@ -136,7 +133,7 @@ Frame load_recorded_frame(const SessionStore& recording, const FrameRecord& reco
     throw Corrupt(error.what());
   }
   if (sha256_hex(bytes) != record.sha256) throw Corrupt(path.string() + ": its bytes do not match the hash in the journal");
-  Frame frame = decode_pgm(bytes, path.string());
+  Frame frame = decode_frame_file(bytes, path.string());
   frame.reported = record.reported;
   frame.device_time_s = record.device_time_s;
   frame.sensor_temperature_c = record.sensor_temperature_c;

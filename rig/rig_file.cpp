@@ -25,8 +25,13 @@ toml::table parsed(const std::string& text, const fs::path& file) {
 void lay_over(toml::table& under, const toml::table& over) {
   for (const auto& [key, value] : over) {
     toml::table* inner = under[key].as_table();
-    if (inner != nullptr && value.is_table()) {
-      lay_over(*inner, *value.as_table());
+    const toml::table* laid = value.as_table();
+    if (laid != nullptr && laid->contains("replaces")) {
+      toml::table whole = *laid;
+      whole.erase("replaces");
+      under.insert_or_assign(key, std::move(whole));
+    } else if (inner != nullptr && laid != nullptr) {
+      lay_over(*inner, *laid);
     } else {
       under.insert_or_assign(key, value);
     }

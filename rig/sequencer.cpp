@@ -6,9 +6,9 @@
 #include <sstream>
 
 #include "drivers/error.h"
+#include "rig/frame_file.h"
 #include "rig/guarded_run.h"
 #include "rig/lighting.h"
-#include "rig/raw_frame_file.h"
 
 namespace lumitexel {
 namespace {
@@ -96,7 +96,7 @@ class Sequencer {
     require_lit(lighting_of(shot.kind));
     if (stop_.stop_requested()) throw Cancelled("capture stopped during shot " + number);
     guard_.expect_life_within(kStoring_s, "storing the frame of shot " + number);
-    session.commit_frame(record, encode_pgm(frame));
+    session.commit_frame(record, stored_bytes(frame));
   }
 
  private:
@@ -137,7 +137,7 @@ class Sequencer {
   NewFrame record_of(const Shot& shot, const Frame& frame) const {
     NewFrame record;
     record.shot_id = shot.id;
-    record.name = frame_file_name(shot);
+    record.name = stored_name(shot, frame);
     record.role = to_string(shot.kind);
     record.requested = shot.camera;
     record.applied = devices_.camera->quantised(shot.camera);

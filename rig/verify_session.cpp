@@ -11,7 +11,7 @@
 
 #include "drivers/error.h"
 #include "rig/motion_time.h"
-#include "rig/raw_frame_file.h"
+#include "rig/frame_file.h"
 #include "rig/rig_description.h"
 #include "rig/sequencer.h"
 #include "rig/sha256.h"
@@ -109,7 +109,7 @@ class Verifier {
   }
 
   void check_settings(const std::string& file, const FrameRecord& frame, const Shot& shot) {
-    if (frame.requested == shot.camera && frame.applied == shot.camera && frame.reported == shot.camera) return;
+    if (frame.requested == shot.camera && frame.applied == shot.camera && same_settings(frame.reported, shot.camera)) return;
     problem(file, "its shot wants " + shown(shot.camera) + "; requested " + shown(frame.requested) + ", applied " +
                       shown(frame.applied) + ", reported " + shown(frame.reported));
   }
@@ -131,7 +131,7 @@ class Verifier {
 
   void check_image(const std::string& file, const std::string& bytes) {
     try {
-      const Frame image = decode_pgm(bytes, file);
+      const Frame image = decode_frame_file(bytes, file);
       if (!camera_) return;  // reported once already
       if (image.width_px != camera_->width_px || image.height_px != camera_->height_px ||
           image.bits != camera_->bits || image.mosaic != camera_->mosaic) {

@@ -160,6 +160,11 @@ std::uint64_t SimulatedBench::noise_key(const CameraSettings& settings, const Wo
   return extended_key(key, std::uint64_t{lamps});
 }
 
+std::uint64_t SimulatedBench::exposures() const {
+  const std::lock_guard lock(mutex_);
+  return exposures_;
+}
+
 BenchExposure SimulatedBench::expose(const CameraSettings& settings, std::uint64_t frame_key, std::stop_token stop) {
   const double start_s = clock_->now_s();
   clock_->sleep_until(start_s + 0.5 * settings.exposure_s, stop);

@@ -84,6 +84,7 @@ class SimulatedBench {
   // Takes settings.exposure_s on the clock, then computes. What is seen is the state at the exposure's middle; the
   // samples depend on the seed, the key, the settings and that state, and on nothing else. Throws Cancelled.
   BenchExposure expose(const CameraSettings& settings, std::uint64_t frame_key, std::stop_token stop);
+  std::uint64_t exposures() const;  // so far
 
  private:
   struct AxisModel {

@@ -150,7 +150,6 @@ void read_mechanics(Table& table, SimulationSettings& s) {
   table.number("turntable_swing_deg", s.turntable_swing_deg, 0.0, 5.0);
   table.number("turntable_swing_decay_s", s.turntable_swing_decay_s, 1e-3, 10.0);
   table.number("turntable_swing_hz", s.turntable_swing_hz, 0.1, 100.0);
-  table.number("time_factor", s.time_factor, 0.01, 1000.0);
 }
 
 toml::table parsed(const std::string& toml_text, const std::string& where) {

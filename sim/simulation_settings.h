@@ -53,8 +53,6 @@ struct SimulationSettings {
 
   // Writes the true state of every exposure over the frame's first pixels (sim/state_strip.h).
   bool state_strip = false;
-  // Served over protocols, the bench's time runs so many times faster than the machine's.
-  double time_factor = 1.0;
 };
 
 // toml: the table's text, with or without its [simulation] header. Throws BadInput naming `where` and the key.

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "drivers/error.h"
-#include "rig/raw_frame_file.h"
+#include "rig/frame_file.h"
 #include "rig/sha256.h"
 
 namespace lumitexel {
@@ -50,7 +50,7 @@ Frame CapturedFrames::load(const FrameRecord& record) const {
   const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   if (!file || sha256_hex(bytes) != record.sha256)
     throw Corrupt(path + ": missing, or not the bytes that were committed");
-  Frame frame = decode_pgm(bytes, path);
+  Frame frame = decode_frame_file(bytes, path);
   frame.reported = record.reported;
   return frame;
 }

@@ -15,9 +15,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Mesh coarse_mesh(const CapturePlan& plan, const std::string& plan_file, const RigBackend& backend) {
+Mesh coarse_mesh(const CapturePlan& plan, const std::string& plan_file, const std::string& mesh_file,
+                 const RigBackend& backend) {
+  if (!mesh_file.empty()) return read_mesh(mesh_file);
   if (plan.mesh != "scan") return read_mesh(fs::path(plan_file).parent_path() / plan.mesh);
-  if (!backend.scan) throw BadInput(plan_file + ": mesh", "'scan'", "a mesh file: this rig has no scanner");
+  if (!backend.scan) throw BadInput(plan_file + ": mesh", "'scan'", "a mesh file, here or by --mesh: this rig has no scanner");
   return backend.scan();
 }
 
@@ -35,7 +37,8 @@ void require_in_sight(const Mesh& mesh, const CaptureInputs& inputs, const std::
 
 }  // namespace
 
-CaptureInputs read_capture_inputs(const std::string& rig_file, const std::string& plan_file) {
+CaptureInputs read_capture_inputs(const std::string& rig_file, const std::string& plan_file,
+                                  const std::string& mesh_file) {
   CaptureInputs inputs;
   inputs.documents["rig.toml"] = read_rig_file(rig_file);
   inputs.documents["plan.toml"] = read_whole_file(plan_file);
@@ -44,8 +47,8 @@ CaptureInputs read_capture_inputs(const std::string& rig_file, const std::string
   inputs.rig = parse_rig(inputs.documents["rig.toml"], rig_file);
   inputs.plan = parse_plan(inputs.documents["plan.toml"], plan_file);
   inputs.shots = schedule_shots(inputs.plan, inputs.rig, plan_file);
-  inputs.backend = connect_rig(inputs.rig, rig_file);
-  const Mesh mesh = coarse_mesh(inputs.plan, plan_file, inputs.backend);
+  inputs.backend = rig_backend(inputs.rig, rig_file);
+  const Mesh mesh = coarse_mesh(inputs.plan, plan_file, mesh_file, inputs.backend);
   require_in_sight(mesh, inputs, plan_file);
   inputs.documents["mesh.ply"] = encode_ply(mesh);
   return inputs;

@@ -21,7 +21,8 @@ struct CaptureInputs {
 };
 
 // Throws BadInput naming file and key or view for anything that cannot be used, a view without the mesh in its picture
-// included. Connects to the rig, moves nothing.
-CaptureInputs read_capture_inputs(const std::string& rig_file, const std::string& plan_file);
+// included. Connects to nothing, moves nothing. mesh_file: instead of the plan's mesh; empty: the plan's.
+CaptureInputs read_capture_inputs(const std::string& rig_file, const std::string& plan_file,
+                                  const std::string& mesh_file = {});
 
 }  // namespace lumitexel

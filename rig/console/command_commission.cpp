@@ -113,8 +113,9 @@ CommandResult run(const CommissionOptions& options, CommandContext& context) {
     throw BadInput("--out", options.out + " is there already", "a new file's name");
   }
   const RigDescription rig = parse_rig(read_rig_file(options.rig), options.rig);
-  RigBackend backend = connect_rig(commissioning_description(rig), options.rig);
-  const CommissionReport report = commission_rig(backend.devices, rig, context.progress, context.stop);
+  const RigBackend backend = rig_backend(commissioning_description(rig), options.rig);
+  RigDevices devices = backend.connect(context.stop);
+  const CommissionReport report = commission_rig(devices, rig, context.progress, context.stop);
   CommandResult result;
   result.json = {{"rig", rig.name},        {"backend", rig.backend}, {"sensor", json_of(report.sensor)},
                  {"timing", json_of(report.timing)}, {"axes", nlohmann::json::array()},

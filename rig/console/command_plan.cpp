@@ -12,7 +12,7 @@ namespace lumitexel {
 namespace {
 
 struct PlanOptions {
-  std::string rig, plan;
+  std::string rig, plan, mesh;
 };
 
 std::string summary_text(const CapturePlan& plan, const RigDescription& rig, const std::vector<Shot>& shots,
@@ -31,7 +31,7 @@ std::string summary_text(const CapturePlan& plan, const RigDescription& rig, con
 }
 
 CommandResult run(const PlanOptions& options) {
-  const CaptureInputs inputs = read_capture_inputs(options.rig, options.plan);
+  const CaptureInputs inputs = read_capture_inputs(options.rig, options.plan, options.mesh);
   const auto& [rig, plan, shots] = std::tie(inputs.rig, inputs.plan, inputs.shots);
   const CaptureEstimate estimate = estimate_capture(shots, rig);
   CommandResult result;
@@ -54,6 +54,7 @@ void add_plan_command(CLI::App& app, CommandAction& action) {
   CLI::App* command = app.add_subcommand("plan", "Check a plan against a rig and say what it will cost; moves nothing");
   command->add_option("RIG", options->rig, "Rig description, TOML")->required();
   command->add_option("PLAN", options->plan, "Capture plan, TOML")->required();
+  command->add_option("--mesh", options->mesh, "The object's coarse mesh (PLY, OBJ), instead of the plan's");
   command->callback([options, &action] { action = [options](CommandContext&) { return run(*options); }; });
 }
 

@@ -22,8 +22,9 @@ CommandResult run(const std::string& directory, CommandContext& context) {
     return replay_result(*recording, session, summary);
   }
   const std::string where = session.document("rig.path");
-  RigBackend backend = connect_rig(parse_rig(session.document("rig.toml"), where), where);
-  return capture_result(session, take_missing_shots(session, backend.devices, context.progress, context.stop));
+  const RigBackend backend = rig_backend(parse_rig(session.document("rig.toml"), where), where);
+  RigDevices devices = backend.connect(context.stop);
+  return capture_result(session, take_missing_shots(session, devices, context.progress, context.stop));
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace lumitexel {
 
 namespace fs = std::filesystem;
 
-RigBackend connect_recorded_rig(const RigDescription& rig, const std::string& where) {
+RigBackend recorded_rig(const RigDescription& rig, const std::string& where) {
   if (rig.recorded_session.empty()) {
     throw BadInput(where + ": recorded.session", "missing", "the folder of the session to play back");
   }
@@ -20,7 +20,9 @@ RigBackend connect_recorded_rig(const RigDescription& rig, const std::string& wh
     throw BadInput(where + ": recorded.session", error.what(), "the folder of a captured session");
   }
   RigBackend backend;
-  backend.devices = make_recorded_devices(recording, recorded_frames(*recording));
+  backend.connect = [recording](std::stop_token) {
+    return make_recorded_devices(recording, recorded_frames(*recording));
+  };
   backend.scan = [recording] {
     return parse_mesh(recording->document("mesh.ply"), ".ply", recording->directory().string() + ": mesh.ply");
   };

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <stop_token>
 #include <string>
 
 #include "processing/surface/mesh.h"
@@ -13,14 +14,15 @@
 namespace lumitexel {
 
 struct RigBackend {
-  RigDevices devices;
+  // Until it is called nothing is connected and nothing moves. Throws what the devices throw.
+  std::function<RigDevices(std::stop_token stop)> connect;
   // The coarse mesh for plans with mesh = "scan"; empty if this backend has no scanner.
   std::function<Mesh()> scan;
   // Writes what a simulated world knows to be true; empty for rigs that do not know.
   std::function<void(const CapturePlan& plan, const std::filesystem::path& truth_directory)> write_truth;
 };
 
-// Throws BadInput naming `where` for a backend that does not exist, and what the backend throws on connecting.
-RigBackend connect_rig(const RigDescription& rig, const std::string& where);
+// Throws BadInput naming `where` for a backend that does not exist and for tables of it that are missing or wrong.
+RigBackend rig_backend(const RigDescription& rig, const std::string& where);
 
 }  // namespace lumitexel

@@ -38,6 +38,15 @@ TEST_F(RigFileTest, KeysLieOverTheBasesAndTheRestStays) {
   EXPECT_EQ(table.table("extra").number("x", NumberRange::finite()), 1e-6);
 }
 
+TEST_F(RigFileTest, ATableThatReplacesKeepsNothingOfTheOther) {
+  write("a.toml", "name = \"a\"\n[hardware.camera]\naddress = \"127.0.0.2\"\n[hardware.table]\nx = 1\n");
+  const TomlTable hardware =
+      TomlTable::parse(read_rig_file(write("b.toml", "base = \"a.toml\"\n[hardware.camera]\nreplaces = true\n"
+                                                     "port = \"usb:\"\n")), "b").table("hardware");
+  EXPECT_EQ(hardware.table("camera").keys(), std::vector<std::string>{"port"});
+  EXPECT_TRUE(hardware.has("table"));
+}
+
 TEST_F(RigFileTest, FilesThatCannotBeUsedAreRefused) {
   EXPECT_THROW(read_rig_file(write("self.toml", "base = \"self.toml\"\n")), BadInput);
   EXPECT_THROW(read_rig_file(write("gone.toml", "base = \"nowhere.toml\"\n")), BadInput);
