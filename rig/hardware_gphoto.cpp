@@ -33,7 +33,8 @@ void check_port(const TomlTable& table, const GphotoConnection& connection) {
     table.reject("port", port, "\"ptpip:ADDRESS\" or \"ptpip:ADDRESS:COMMAND_PORT:EVENT_PORT\"");
   }
   if (over_ip && connection.model.empty()) {
-    table.reject("model", "missing", "libgphoto2's name for the camera, such as \"PTP/IP Camera\": only USB is searched");
+    table.reject("model", "missing",
+                 "libgphoto2's name for the camera, such as \"PTP/IP Camera\": only USB is searched");
   }
 }
 

@@ -39,7 +39,7 @@ void take_tag(void* tags, int tag, int type, int count, unsigned order, void* st
   });
 }
 
-// LibRaw calls this where the picture's data end early, and goes on with zeros.
+// Called where a decoder finds the picture's data damaged or ending early; LibRaw's own would write to stderr.
 void note_data_error(void* noted, const char*, int) { *static_cast<bool*>(noted) = true; }
 
 Mosaic mosaic_of(LibRaw& raw, const std::string& where) {

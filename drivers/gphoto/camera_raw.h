@@ -1,9 +1,9 @@
-// Camera raw files (CR2, CR3, NEF, ARW, DNG, …) as the sensor's integers and what their EXIF says. LibRaw reads them; nothing
-// is subtracted, scaled, turned or interpolated.
+// Camera raw files (CR2, CR3, NEF, ARW, DNG, …) as the sensor's integers and what their EXIF says. LibRaw reads them;
+// nothing is subtracted, scaled, turned or interpolated.
 //
-// The samples are those of the visible area: the masked border that many sensors have is left out, and the mosaic is that
-// of the visible area's corner. Sizes are therefore LibRaw's, which may differ by some pixels from what a maker advertises.
-// Tried: DNGs of our own simulated camera only. Real cameras' files: not yet.
+// The samples are those of the visible area: the masked border that many sensors have is left out, and the mosaic is
+// that of the visible area's corner. Sizes are therefore LibRaw's, which may differ by some pixels from what a maker
+// advertises. Tried: DNGs of our own simulated camera only. Real cameras' files: not yet.
 #pragma once
 
 #include <cstdint>
@@ -22,9 +22,9 @@ struct CameraRawExif {
   std::string artist, copyright;
   // DateTimeOriginal as seconds since 1970-01-01, as if the camera's clock kept UTC: EXIF mostly names no zone.
   std::optional<double> time_s;
-  bool has_subseconds = false;  // else time_s is whole
+  bool has_subseconds = false;                // else time_s is whole
   std::optional<std::uint64_t> image_number;  // EXIF's ImageNumber, not what makers count in their own tags
-  std::optional<double> temperature_c;  // of the sensor, else of the camera, else of the air
+  std::optional<double> temperature_c;        // of the sensor, else of the camera, else of the air
 };
 
 struct CameraRaw {
@@ -35,8 +35,8 @@ struct CameraRaw {
   CameraRawExif exif;
 };
 
-// where: names the file in errors. Throws Corrupt, naming it, for bytes that are no camera raw file, end too early, or hold
-// something else than a monochrome or a 2x2 Bayer mosaic. Thread-safe.
+// where: names the file in errors. Throws Corrupt, naming it, for bytes that are no camera raw file, end too early, or
+// hold something else than a monochrome or a 2x2 Bayer mosaic. Thread-safe.
 CameraRaw decode_camera_raw(std::span<const std::uint8_t> bytes, const std::string& where);
 
 }  // namespace lumitexel

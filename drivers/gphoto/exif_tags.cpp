@@ -75,14 +75,22 @@ void keep_first(Value& kept, Value value) {
 void ExifTags::take(int tag, int type, int count, bool little_endian, const Read& read) {
   if ((tag >> 16 & 0xF) != 0) return;  // a maker's own directory: the same numbers mean other things there
   switch (tag & 0xFFFF) {
-    case 33434: return keep_first(exposure_s_, positive_value(type, count, little_endian, read));
-    case 34855: return keep_first(iso_, positive_value(type, count, little_endian, read));
-    case 37393: return keep_first(image_number_, positive_value(type, count, little_endian, read));
-    case 315: return keep_first(artist_, text_value(type, count, read));
-    case 33432: return keep_first(copyright_, text_value(type, count, read));
-    case 36867: return keep_first(date_, text_value(type, count, read));
-    case 37521: return keep_first(subseconds_, text_value(type, count, read));
-    default: return;
+    case 33434:
+      return keep_first(exposure_s_, positive_value(type, count, little_endian, read));
+    case 34855:
+      return keep_first(iso_, positive_value(type, count, little_endian, read));
+    case 37393:
+      return keep_first(image_number_, positive_value(type, count, little_endian, read));
+    case 315:
+      return keep_first(artist_, text_value(type, count, read));
+    case 33432:
+      return keep_first(copyright_, text_value(type, count, read));
+    case 36867:
+      return keep_first(date_, text_value(type, count, read));
+    case 37521:
+      return keep_first(subseconds_, text_value(type, count, read));
+    default:
+      return;
   }
 }
 

@@ -57,7 +57,9 @@ std::optional<double> parse_iso(const std::string& choice) {
   return iso;
 }
 
-bool same_choice(double a, double b) { return a > 0.0 && b > 0.0 && std::abs(a - b) <= kDialTolerance * std::min(a, b); }
+bool same_choice(double a, double b) {
+  return a > 0.0 && b > 0.0 && std::abs(a - b) <= kDialTolerance * std::min(a, b);
+}
 
 std::optional<std::string> find_choice(const std::vector<std::string>& choices,
                                        std::optional<double> (*parse)(const std::string&), double wanted) {

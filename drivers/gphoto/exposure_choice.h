@@ -7,8 +7,8 @@
 
 namespace lumitexel {
 
-// Seconds: "1/250", "0.0040s", "2.5", "30", "30\"", "1 1/3", "0,3". Empty for whatever is no time by itself: "bulb", "auto",
-// "Time", "x 200", "0".
+// Seconds: "1/250", "0.0040s", "2.5", "30", "30\"", "1 1/3", "0,3". Empty for whatever is no time by itself: "bulb",
+// "auto", "Time", "x 200", "0".
 std::optional<double> parse_exposure_s(const std::string& choice);
 
 // "100", "ISO 100"; empty for "Auto", "Hi 1", "Lo 0.3", "0".

@@ -11,7 +11,9 @@ namespace lumitexel {
 
 inline constexpr std::string_view kFrameNamePrefix = "lumitexel-";
 
-inline std::string frame_name(std::uint64_t frame_key) { return std::string(kFrameNamePrefix) + std::to_string(frame_key); }
+inline std::string frame_name(std::uint64_t frame_key) {
+  return std::string(kFrameNamePrefix) + std::to_string(frame_key);
+}
 
 // Empty if the text is not one of frame_name()'s; blanks behind it, which some cameras add, do not matter.
 inline std::optional<std::uint64_t> frame_key_of(std::string_view text) {

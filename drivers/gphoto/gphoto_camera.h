@@ -1,17 +1,19 @@
 // A DSLR or mirrorless camera through libgphoto2, delivering camera raw files.
 //
-// Tried: a simulated camera over PTP/IP (sim/protocol/ptp), through libgphoto2's real ptp2 driver. Canon, Nikon, Sony or Fuji
-// bodies and USB: not yet tried.
+// Tried: a simulated camera over PTP/IP (sim/protocol/ptp), through libgphoto2's real ptp2 driver. Canon, Nikon, Sony
+// or Fuji bodies and USB: not yet tried.
 //
 //   arm      exposure and ISO are set by the text of one of the camera's own choices and read back
-//   trigger  names the frame if the camera can, releases the shutter, fetches the file, deletes it on the card, decodes it
-//   recover  kills the worker process (gphoto_process.h), connects anew, makes the fixed settings again
+//   trigger  names the frame if the camera can, releases the shutter, fetches the file, deletes it on the card, decodes
+//   it recover  kills the worker process (gphoto_process.h), connects anew, makes the fixed settings again
 //
-// Dials write rounded numbers ("1/30" for 0.0333 s): a choice or an EXIF value within kDialTolerance of what was asked for is
-// taken to be it, and reported as it; exposure_choice.h says why. What a dial's place really lasts is for calibration to find.
+// Dials write rounded numbers ("1/30" for 0.0333 s): a choice or an EXIF value within kDialTolerance of what was asked
+// for is taken to be it, and reported as it; exposure_choice.h says why. What a dial's place really lasts is for
+// calibration to find.
 //
-// Without frame_name_setting, a picture whose shutter was released for a shot that was then cancelled could be taken for the
-// next shot's, if its report comes late enough and its settings are the same. With it, no frame of another shot is accepted.
+// Without frame_name_setting, a picture whose shutter was released for a shot that was then cancelled could be taken
+// for the next shot's, if its report comes late enough and its settings are the same. With it, no frame of another shot
+// is accepted.
 #pragma once
 
 #include <filesystem>
@@ -29,9 +31,9 @@ struct CameraRaw;
 
 class GphotoCamera final : public Camera {
  public:
-  // Connects. limits: the camera's, as its raw files really are (camera_raw.h on their size). clock: a real one. worker: the
-  // program lumitexel-gphoto-worker. Throws BadInput without a worker, Disconnected if the camera is not reached within
-  // reconnect_timeout_s, OutOfRange for a model or a port that libgphoto2 does not know.
+  // Connects. limits: the camera's, as its raw files really are (camera_raw.h on their size). clock: a real one.
+  // worker: the program lumitexel-gphoto-worker. Throws BadInput without a worker, Disconnected if the camera is not
+  // reached within reconnect_timeout_s, OutOfRange for a model or a port that libgphoto2 does not know.
   GphotoCamera(const GphotoConnection& connection, const CameraLimits& limits, std::shared_ptr<Clock> clock,
                const std::filesystem::path& worker = default_gphoto_worker());
 
@@ -42,9 +44,9 @@ class GphotoCamera final : public Camera {
  protected:
   // Throws OutOfRange, listing the camera's choices, if none is what was asked for.
   CameraSettings arm(const CameraSettings& settings, std::stop_token stop) override;
-  // device_time_s: EXIF's DateTimeOriginal. A camera that writes whole seconds may take several pictures in one; each is
-  // then put a millisecond after the one before, so that time goes on. Without any date: this clock's time at arrival.
-  // device_frame_id: EXIF's image number, else a hash of the file, which no two exposures share.
+  // device_time_s: EXIF's DateTimeOriginal. A camera that writes whole seconds may take several pictures in one; each
+  // is then put a millisecond after the one before, so that time goes on. Without any date: this clock's time at
+  // arrival. device_frame_id: EXIF's image number, else a hash of the file, which no two exposures share.
   // sensor_temperature_c stays 0 where the file tells none.
   Frame trigger(std::uint64_t frame_key, std::stop_token stop) override;
   void recover(std::stop_token stop) override;

@@ -38,7 +38,8 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   return pointers;
 }
 
-// The worker gets its end of the socket and the standard descriptors, and none of the program's others. Returns 0 or errno.
+// The worker gets its end of the socket and the standard descriptors, and none of the program's others. Returns 0 or
+// errno.
 int spawn(const std::string& worker, int socket, std::vector<std::string> environment, pid_t& pid) {
   std::vector<std::string> words{worker};
   posix_spawn_file_actions_t actions;

@@ -1,8 +1,8 @@
 // The worker process that libgphoto2 lives in: started, spoken to with a deadline for each message, and killed.
 //
-// libgphoto2 blocks, and a camera can wedge it so that no call returns. Whatever goes wrong in an exchange, therefore (no
-// answer in time, a stop request, an answer that makes no sense), the worker is killed; nothing of an exchange can then
-// turn up in the next.
+// libgphoto2 blocks, and a camera can wedge it so that no call returns. Whatever goes wrong in an exchange, therefore
+// (no answer in time, a stop request, an answer that makes no sense), the worker is killed; nothing of an exchange can
+// then turn up in the next.
 #pragma once
 
 #include <sys/types.h>
@@ -29,17 +29,17 @@ class GphotoProcess {
   GphotoProcess(const GphotoProcess&) = delete;
   GphotoProcess& operator=(const GphotoProcess&) = delete;
 
-  // Starts a new worker, after killing the one that there is. Throws BadInput if there is no such program, Disconnected if
-  // the system cannot start it.
+  // Starts a new worker, after killing the one that there is. Throws BadInput if there is no such program, Disconnected
+  // if the system cannot start it.
   void start();
   // SIGKILL, and waits until it is gone: no zombie stays.
   void kill() noexcept;
   bool is_running() const { return pid_ > 0; }
   pid_t pid() const { return pid_; }  // 0: none
 
-  // Throws what the answer says went wrong (Timeout, Disconnected, Protocol, OutOfRange, StorageFull; the worker lives on),
-  // or, after killing the worker: Timeout for no answer within timeout_s, Cancelled, Disconnected if the worker ended by
-  // itself or is not running, Protocol.
+  // Throws what the answer says went wrong (Timeout, Disconnected, Protocol, OutOfRange, StorageFull; the worker lives
+  // on), or, after killing the worker: Timeout for no answer within timeout_s, Cancelled, Disconnected if the worker
+  // ended by itself or is not running, Protocol.
   WorkerMessage exchange(const WorkerMessage& request, double timeout_s, std::stop_token stop);
 
  private:

@@ -15,6 +15,8 @@
 namespace lumitexel {
 namespace {
 
+constexpr double kBusyPause_s = 0.05;
+
 template <class Handle, int (*Release)(Handle*)>
 struct Releaser {
   void operator()(Handle* handle) const { Release(handle); }
@@ -30,22 +32,39 @@ void keep_log(GPLogLevel, const char*, const char* text, void*) { last_log = tex
 
 bool log_mentions(const char* ptp_code) { return last_log.find(ptp_code) != std::string::npos; }
 
+// While it exists. With any listener at all, libgphoto2 spells out every byte of a file for its log: a third of a
+// transfer's time. Downloads therefore go without.
+class LogKeeper {
+ public:
+  LogKeeper() : id_(gp_log_add_func(GP_LOG_ERROR, keep_log, nullptr)) { last_log.clear(); }
+  ~LogKeeper() { gp_log_remove_func(id_); }
+  LogKeeper(const LogKeeper&) = delete;
+  LogKeeper& operator=(const LogKeeper&) = delete;
+
+ private:
+  int id_;
+};
+
 int checked(int code, const std::string& what) {
   if (code >= GP_OK) return code;
   const std::string text = what + ": libgphoto2 says '" + gp_result_as_string(code) + "' (" + std::to_string(code) +
                            ")" + (last_log.empty() ? "" : ", before it: " + last_log);
   if (code == GP_ERROR_NO_SPACE || log_mentions("200c") || log_mentions("200C")) throw StorageFull(text);
   switch (code) {
-    case GP_ERROR_TIMEOUT: throw Timeout(text);
+    case GP_ERROR_TIMEOUT:
+      throw Timeout(text);
     case GP_ERROR_IO:
     case GP_ERROR_IO_INIT:
     case GP_ERROR_IO_READ:
     case GP_ERROR_IO_WRITE:
     case GP_ERROR_IO_USB_FIND:
-    case GP_ERROR_IO_USB_CLAIM: throw Disconnected(text);
+    case GP_ERROR_IO_USB_CLAIM:
+      throw Disconnected(text);
     case GP_ERROR_MODEL_NOT_FOUND:
-    case GP_ERROR_UNKNOWN_PORT: throw OutOfRange(text);
-    default: throw Protocol(text);
+    case GP_ERROR_UNKNOWN_PORT:
+      throw OutOfRange(text);
+    default:
+      throw Protocol(text);
   }
 }
 
@@ -60,13 +79,11 @@ bool is_jpeg(const std::string& name) {
 struct GphotoSession::Library {
   GPContext* context = gp_context_new();
   ::Camera* camera = nullptr;
-  int log = gp_log_add_func(GP_LOG_ERROR, keep_log, nullptr);
   SystemClock clock;
 
   ~Library() {
     if (camera != nullptr) gp_camera_unref(camera);
     gp_context_unref(context);
-    gp_log_remove_func(log);
   }
 
   void choose_model(const std::string& model) {
@@ -104,6 +121,18 @@ struct GphotoSession::Library {
     return {std::move(widget), type};
   }
 
+  // A camera may be busy with the picture before, and is asked again until it is not.
+  void release_shutter(double deadline_s) {
+    while (true) {
+      const int code = gp_camera_trigger_capture(camera, context);
+      if (code != GP_ERROR_CAMERA_BUSY || clock.now_s() > deadline_s) {
+        checked(code, "releasing the shutter");
+        return;
+      }
+      clock.sleep_until(clock.now_s() + kBusyPause_s, {});
+    }
+  }
+
   // One thing that the camera reports within wait_ms; a new file's path if it is that.
   std::optional<CardPath> next_file(int wait_ms, CameraEventType& type) {
     void* data = nullptr;
@@ -117,7 +146,7 @@ struct GphotoSession::Library {
 
 GphotoSession::GphotoSession(const std::string& model, const std::string& port)
     : library_(std::make_unique<Library>()) {
-  last_log.clear();
+  const LogKeeper keeper;
   checked(gp_camera_new(&library_->camera), "a new camera");
   if (!model.empty()) library_->choose_model(model);
   library_->choose_port(port);
@@ -127,7 +156,7 @@ GphotoSession::GphotoSession(const std::string& model, const std::string& port)
 GphotoSession::~GphotoSession() { gp_camera_exit(library_->camera, library_->context); }
 
 void GphotoSession::set(const std::string& name, const std::string& value) {
-  last_log.clear();
+  const LogKeeper keeper;
   const auto [widget, type] = library_->setting(name);
   const std::string what = "setting '" + name + "' to '" + value + "'";
   if (type == GP_WIDGET_TOGGLE) {
@@ -143,7 +172,7 @@ void GphotoSession::set(const std::string& name, const std::string& value) {
 }
 
 std::string GphotoSession::get(const std::string& name) {
-  last_log.clear();
+  const LogKeeper keeper;
   const auto [widget, type] = library_->setting(name);
   if (type == GP_WIDGET_TOGGLE) {
     int on = 0;
@@ -161,7 +190,7 @@ std::string GphotoSession::get(const std::string& name) {
 }
 
 std::vector<std::string> GphotoSession::choices(const std::string& name) {
-  last_log.clear();
+  const LogKeeper keeper;
   const auto [widget, type] = library_->setting(name);
   std::vector<std::string> choices;
   const int count = type == GP_WIDGET_RADIO || type == GP_WIDGET_MENU ? gp_widget_count_choices(widget.get()) : 0;
@@ -174,11 +203,11 @@ std::vector<std::string> GphotoSession::choices(const std::string& name) {
 }
 
 CardPath GphotoSession::capture(double timeout_s) {
-  last_log.clear();
+  const LogKeeper keeper;
   CameraEventType type = GP_EVENT_UNKNOWN;
   for (int left = 100; left > 0 && type != GP_EVENT_TIMEOUT; --left) library_->next_file(1, type);
-  checked(gp_camera_trigger_capture(library_->camera, library_->context), "releasing the shutter");
   const double deadline_s = library_->clock.now_s() + timeout_s;
+  library_->release_shutter(deadline_s);
   while (library_->clock.now_s() < deadline_s) {
     const std::optional<CardPath> path = library_->next_file(100, type);
     if (path && !is_jpeg(path->file)) return *path;
@@ -203,7 +232,7 @@ std::vector<std::uint8_t> GphotoSession::download(const CardPath& path) {
 }
 
 void GphotoSession::remove(const CardPath& path) {
-  last_log.clear();
+  const LogKeeper keeper;
   checked(gp_camera_file_delete(library_->camera, path.folder.c_str(), path.file.c_str(), library_->context),
           "deleting " + path.folder + "/" + path.file);
 }

@@ -15,8 +15,8 @@ struct CardPath {
 
 class GphotoSession {
  public:
-  // Connects. model: libgphoto2's name, empty: the one that it detects at the port (USB only). Every member throws Timeout,
-  // Disconnected, Protocol or OutOfRange (no such model, port, setting or choice) naming what libgphoto2 said.
+  // Connects. model: libgphoto2's name, empty: the one that it detects at the port (USB only). Every member throws
+  // Timeout, Disconnected, Protocol or OutOfRange (no such model, port, setting or choice) naming what libgphoto2 said.
   GphotoSession(const std::string& model, const std::string& port);
   ~GphotoSession();
 

@@ -1,5 +1,5 @@
-// lumitexel-gphoto-worker: libgphoto2 in a process of its own, which the driver may kill when a camera wedges it. Started by
-// GphotoProcess only, with its end of a socket as descriptor 3 and a HOME that belongs to it alone.
+// lumitexel-gphoto-worker: libgphoto2 in a process of its own, which the driver may kill when a camera wedges it.
+// Started by GphotoProcess only, with its end of a socket as descriptor 3 and a HOME that belongs to it alone.
 #include <poll.h>
 #include <signal.h>
 #include <sys/socket.h>

@@ -10,7 +10,8 @@ namespace lumitexel {
 namespace {
 
 constexpr double kPauseBetweenTries_s = 0.1;
-// The worker gives up waiting for a picture by itself, but only after its parent would have: its answer could be lost else.
+// The worker gives up waiting for a picture by itself, but only after its parent would have: its answer could be lost
+// else.
 constexpr double kWorkerGrace_s = 1.0;
 
 }  // namespace
@@ -97,14 +98,14 @@ std::string RemoteCamera::set(const std::string& setting, const std::string& val
 
 DownloadedPicture RemoteCamera::take_picture(double exposure_s, std::stop_token stop) {
   const double timeout_s = exposure_s + connection_.answer_timeout_s;
-  const WorkerMessage taken = ask(
-      {{{"verb", "capture"}, {"timeout_s", std::to_string(timeout_s + kWorkerGrace_s)}}, {}, {}}, timeout_s, stop);
+  const WorkerMessage taken =
+      ask({{{"verb", "capture"}, {"timeout_s", std::to_string(timeout_s + kWorkerGrace_s)}}, {}, {}}, timeout_s, stop);
   const std::string& folder = taken.field("folder");
   const std::string& file = taken.field("file");
   DownloadedPicture picture{file, {}};
-  picture.bytes = ask({{{"verb", "download"}, {"folder", folder}, {"file", file}}, {}, {}},
-                      connection_.answer_timeout_s, stop)
-                      .bytes;
+  picture.bytes =
+      ask({{{"verb", "download"}, {"folder", folder}, {"file", file}}, {}, {}}, connection_.answer_timeout_s, stop)
+          .bytes;
   try {
     ask({{{"verb", "remove"}, {"folder", folder}, {"file", file}}, {}, {}}, connection_.answer_timeout_s, stop);
   } catch (const Cancelled&) {

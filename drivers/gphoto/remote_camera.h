@@ -1,4 +1,5 @@
-// A camera in the worker process, verb by verb, each with its deadline. Knows when its connection can no longer be trusted.
+// A camera in the worker process, verb by verb, each with its deadline. Knows when its connection can no longer be
+// trusted.
 #pragma once
 
 #include <filesystem>
@@ -18,14 +19,16 @@ struct DownloadedPicture {
   std::vector<std::uint8_t> bytes;
 };
 
-// Every member but disconnect() throws Timeout, Disconnected, Protocol, OutOfRange, StorageFull or Cancelled, naming the
-// camera, and leaves it unconnected except after OutOfRange and StorageFull.
+// Every member but disconnect() throws Timeout, Disconnected, Protocol, OutOfRange, StorageFull or Cancelled, naming
+// the camera, and leaves it unconnected except after OutOfRange and StorageFull.
 class RemoteCamera {
  public:
-  RemoteCamera(std::string name, GphotoConnection connection, std::filesystem::path worker, std::shared_ptr<Clock> clock);
+  RemoteCamera(std::string name, GphotoConnection connection, std::filesystem::path worker,
+               std::shared_ptr<Clock> clock);
 
   // A new worker, a new connection, the fixed settings made and read back, the dials' choices read. Tries again until
-  // reconnect_timeout_s have passed, then throws Disconnected. Throws OutOfRange at once for a model or a port that libgphoto2 does not know.
+  // reconnect_timeout_s have passed, then throws Disconnected. Throws OutOfRange at once for a model or a port that
+  // libgphoto2 does not know.
   void connect(std::stop_token stop);
   bool is_connected() const { return connected_ && process_.is_running(); }
   void disconnect() noexcept;

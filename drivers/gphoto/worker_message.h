@@ -13,8 +13,8 @@
 //   download folder, file               -> bytes
 //   remove folder, file                 deletes it from the card
 //   close
-// An answer with a field "cause" is a failure: "timeout", "disconnected", "protocol", "out_of_range" or "storage_full"; "text"
-// says more.
+// An answer with a field "cause" is a failure: "timeout", "disconnected", "protocol", "out_of_range" or "storage_full";
+// "text" says more.
 #pragma once
 
 #include <cstdint>

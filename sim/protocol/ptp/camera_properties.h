@@ -1,9 +1,9 @@
 // The simulated camera's settings as PTP device properties.
 //
-// Exposures are whole tenths of a millisecond on the wire (property 500D). A rig's exposure_choices_s that are not, or that
-// lie below 0.1 ms, are refused when the camera is made, not rounded. libgphoto2 2.5.30 turns a choice's text into a count
-// by cutting, not rounding, and takes the nearest choice: choices one count apart may be mistaken for each other there,
-// which the driver notices when it reads back.
+// Exposures are whole tenths of a millisecond on the wire (property 500D). A rig's exposure_choices_s that are not, or
+// that lie below 0.1 ms, are refused when the camera is made, not rounded. libgphoto2 2.5.30 turns a choice's text into
+// a count by cutting, not rounding, and takes the nearest choice: choices one count apart may be mistaken for each
+// other there, which the driver notices when it reads back.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +19,9 @@ namespace lumitexel::ptp {
 
 class CameraProperties {
  public:
-  // Exposures are limits.exposure_choices_s, or a dial in thirds of stops from 1/1000 s to 30 s, as far as it lies within
-  // the limits; so are ISO values, where gain_db = 20 log10(iso / iso_at_0_db). Throws BadInput if a choice of exposure is
-  // no whole number of tenths of milliseconds, or if no exposure or no ISO value is left.
+  // Exposures are limits.exposure_choices_s, or a dial in thirds of stops from 1/1000 s to 30 s, as far as it lies
+  // within the limits; so are ISO values, where gain_db = 20 log10(iso / iso_at_0_db). Throws BadInput if a choice of
+  // exposure is no whole number of tenths of milliseconds, or if no exposure or no ISO value is left.
   CameraProperties(const CameraLimits& limits, const std::vector<int>& iso_choices, double iso_at_0_db);
 
   std::vector<std::uint16_t> codes() const;

@@ -39,20 +39,24 @@ std::string subsecond_text(std::int64_t utc_ns) {
 // 0 red, 1 green, 2 blue, of the pixels (0,0) (1,0) / (0,1) (1,1).
 std::vector<std::uint8_t> pattern_of(Mosaic mosaic) {
   switch (mosaic) {
-    case Mosaic::Rggb: return {0, 1, 1, 2};
-    case Mosaic::Bggr: return {2, 1, 1, 0};
-    case Mosaic::Grbg: return {1, 0, 2, 1};
-    default: return {1, 2, 0, 1};
+    case Mosaic::Rggb:
+      return {0, 1, 1, 2};
+    case Mosaic::Bggr:
+      return {2, 1, 1, 0};
+    case Mosaic::Grbg:
+      return {1, 0, 2, 1};
+    default:
+      return {1, 2, 0, 1};
   }
 }
 
 void add_mosaic(TiffDirectory& directory, Mosaic mosaic) {
   directory.shorts(262, {mosaic == Mosaic::Mono ? kLinearRaw : kCfa});
   if (mosaic == Mosaic::Mono) return;
-  directory.shorts(33421, {2, 2});                 // CFARepeatPatternDim
-  directory.bytes(33422, pattern_of(mosaic));      // CFAPattern
-  directory.bytes(50710, {0, 1, 2});               // CFAPlaneColor
-  directory.shorts(50711, {1});                    // CFALayout: rectangular
+  directory.shorts(33421, {2, 2});             // CFARepeatPatternDim
+  directory.bytes(33422, pattern_of(mosaic));  // CFAPattern
+  directory.bytes(50710, {0, 1, 2});           // CFAPlaneColor
+  directory.shorts(50711, {1});                // CFALayout: rectangular
   const Rational one{1, 1}, zero{0, 1};
   directory.rationals(50721, {one, zero, zero, zero, one, zero, zero, zero, one}, true);  // ColorMatrix1
   directory.rationals(50728, {one, one, one}, false);                                     // AsShotNeutral
@@ -103,12 +107,13 @@ TiffDirectory exif_of(const DngContent& content) {
 void require_usable(const DngContent& content) {
   const std::size_t pixels = static_cast<std::size_t>(content.width_px) * static_cast<std::size_t>(content.height_px);
   if (content.width_px > 0 && content.height_px > 0 && content.samples.size() == pixels && content.bits >= 1 &&
-      content.bits <= 16 && content.iso > 0 && content.iso < 65536) {
+      content.bits <= 16 && content.iso > 0 && content.iso < 65536 && !content.make.empty() && !content.model.empty()) {
     return;
   }
   throw OutOfRange("DNG: " + std::to_string(content.width_px) + " x " + std::to_string(content.height_px) +
-                   " pixels of " + std::to_string(content.bits) + " bits, ISO " + std::to_string(content.iso) + ", " +
-                   std::to_string(content.samples.size()) + " samples given");
+                   " pixels of " + std::to_string(content.bits) + " bits by '" + content.make + "', '" + content.model +
+                   "', ISO " + std::to_string(content.iso) + ", " + std::to_string(content.samples.size()) +
+                   " samples given");
 }
 
 }  // namespace
@@ -130,10 +135,11 @@ std::vector<std::uint8_t> write_dng(const DngContent& content) {
   file.u8('I').u8('I').u16(42).u32(kFirstDirectory);
   file.bytes(picture.encoded(kFirstDirectory)).bytes(exif.encoded(exif_at));
   std::vector<std::uint8_t> bytes = file.take();
-  bytes.reserve(bytes.size() + 2 * content.samples.size());
+  std::size_t place = bytes.size();
+  bytes.resize(place + 2 * content.samples.size());
   for (const std::uint16_t sample : content.samples) {
-    bytes.push_back(static_cast<std::uint8_t>(sample));
-    bytes.push_back(static_cast<std::uint8_t>(sample >> 8));
+    bytes[place++] = static_cast<std::uint8_t>(sample);
+    bytes[place++] = static_cast<std::uint8_t>(sample >> 8);
   }
   return bytes;
 }

@@ -19,14 +19,15 @@ struct DngContent {
   double exposure_s = 0;
   int iso = 100;
   double f_number = 8.0;
-  std::string make, model, serial;
-  std::string artist;         // empty: left out
-  std::int64_t utc_ns = 0;    // the camera's clock is set to UTC; written to the microsecond
+  std::string make, model;  // readers recognise a raw file by them: neither may be empty
+  std::string serial;
+  std::string artist;       // empty: left out
+  std::int64_t utc_ns = 0;  // the camera's clock is set to UTC; written to the microsecond
   std::uint32_t image_number = 0;
   double temperature_c = 25;  // as EXIF's AmbientTemperature: it has no tag for the sensor's
 };
 
-// The file's bytes. Throws OutOfRange if samples and size disagree or the size is none.
+// The file's bytes. Throws OutOfRange if samples and size disagree, the size is none or no maker is named.
 std::vector<std::uint8_t> write_dng(const DngContent& content);
 
 }  // namespace lumitexel::ptp

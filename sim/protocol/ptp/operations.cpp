@@ -34,9 +34,13 @@ Reply Operations::in_session(const Request& request, std::uint64_t session, Faul
   const std::uint32_t first = request.parameters[0];
   const auto code = static_cast<std::uint16_t>(first);
   switch (request.operation) {
-    case Operation::CloseSession: open_ = false; return only(Response::Ok);
-    case Operation::GetStorageIds: return with_data(DatasetWriter().numbers32({kStorageId}).take());
-    case Operation::GetStorageInfo: return storage_info();
+    case Operation::CloseSession:
+      open_ = false;
+      return only(Response::Ok);
+    case Operation::GetStorageIds:
+      return with_data(DatasetWriter().numbers32({kStorageId}).take());
+    case Operation::GetStorageInfo:
+      return storage_info();
     case Operation::GetNumObjects:
       return {Response::Ok, {static_cast<std::uint32_t>(card_.handles().size())}, nullptr};
     case Operation::GetObjectHandles: {
@@ -44,22 +48,30 @@ Reply Operations::in_session(const Request& request, std::uint64_t session, Faul
       const bool root = request.parameters[2] == 0 || request.parameters[2] == 0xFFFFFFFF;
       return with_data(DatasetWriter().numbers32(root ? card_.handles() : std::vector<std::uint32_t>{}).take());
     }
-    case Operation::GetObjectInfo: return object_info(first);
-    case Operation::GetObject: return object(first);
-    case Operation::DeleteObject: return only(card_.erase(first) ? Response::Ok : Response::InvalidObjectHandle);
-    case Operation::InitiateCapture: return capture(request, session, fault);
-    case Operation::GetDevicePropDesc: return with_property(properties_.description(code));
-    case Operation::GetDevicePropValue: return with_property(properties_.value(code));
-    case Operation::SetDevicePropValue: return only(properties_.set(code, request.data));
-    default: return only(Response::OperationNotSupported);
+    case Operation::GetObjectInfo:
+      return object_info(first);
+    case Operation::GetObject:
+      return object(first);
+    case Operation::DeleteObject:
+      return only(card_.erase(first) ? Response::Ok : Response::InvalidObjectHandle);
+    case Operation::InitiateCapture:
+      return capture(request, session, fault);
+    case Operation::GetDevicePropDesc:
+      return with_property(properties_.description(code));
+    case Operation::GetDevicePropValue:
+      return with_property(properties_.value(code));
+    case Operation::SetDevicePropValue:
+      return only(properties_.set(code, request.data));
+    default:
+      return only(Response::OperationNotSupported);
   }
 }
 
 Reply Operations::device_info() const {
   DatasetWriter writer;
   writer.u16(100).u32(0).u16(100).text("").u16(0);  // standard 1.00, no vendor's extension, standard mode
-  writer.numbers16({0x1001, 0x1002, 0x1003, 0x1004, 0x1005, 0x1006, 0x1007, 0x1008, 0x1009, 0x100B, 0x100E, 0x1014,
-                    0x1015, 0x1016});
+  writer.numbers16(
+      {0x1001, 0x1002, 0x1003, 0x1004, 0x1005, 0x1006, 0x1007, 0x1008, 0x1009, 0x100B, 0x100E, 0x1014, 0x1015, 0x1016});
   writer.numbers16({0x4002, 0x400D});
   writer.numbers16(properties_.codes());
   writer.numbers16({kFormatDng}).numbers16({kFormatDng});

@@ -145,10 +145,10 @@ bool PtpCameraServer::greet(Connection& connection, std::stop_token stop) {
     return false;
   }
   DatasetWriter greeting;
-  greeting.u32(1);                                                 // the connection's number
-  for (int i = 0; i < 16; ++i) greeting.u8(0x4c + i);              // who the camera is, the same at all times
+  greeting.u32(1);                                     // the connection's number
+  for (int i = 0; i < 16; ++i) greeting.u8(0x4c + i);  // who the camera is, the same at all times
   for (const char character : options_.model) greeting.u16(static_cast<unsigned char>(character));
-  greeting.u16(0).u32(0x00010000);                                 // PTP/IP 1.0
+  greeting.u16(0).u32(0x00010000);  // PTP/IP 1.0
   return send(connection, whole(ptp::encoded(Packet{PacketType::InitCommandAck, greeting.take()})), fault, stop);
 }
 
@@ -187,9 +187,13 @@ ptp::Reply PtpCameraServer::carry_out(const ptp::Request& request, std::uint64_t
 
 bool PtpCameraServer::send(Connection& connection, const EncodedReply& reply, Fault fault, std::stop_token stop) {
   switch (fault) {
-    case Fault::Mute: return true;
-    case Fault::Disconnect: return false;
-    case Fault::HalfReply: ptp::write_reply(connection.socket, reply, reply.size() / 2, stop); return false;
+    case Fault::Mute:
+      return true;
+    case Fault::Disconnect:
+      return false;
+    case Fault::HalfReply:
+      ptp::write_reply(connection.socket, reply, reply.size() / 2, stop);
+      return false;
     case Fault::Garbage: {
       std::vector<std::uint8_t> noise(64);
       for (std::uint8_t& byte : noise) byte = static_cast<std::uint8_t>(256.0 * faults_->detail());
@@ -200,7 +204,8 @@ bool PtpCameraServer::send(Connection& connection, const EncodedReply& reply, Fa
       clock.sleep_until(clock.now_s() + options_.late_reply_s, stop);
       break;
     }
-    default: break;
+    default:
+      break;
   }
   return ptp::write_reply(connection.socket, reply, std::numeric_limits<std::size_t>::max(), stop);
 }

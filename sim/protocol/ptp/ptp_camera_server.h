@@ -1,12 +1,12 @@
 // A still camera that speaks PTP/IP, over a simulated bench: libgphoto2's ptp2 driver and others take pictures with it.
 //
-// A picture is a DNG of what the bench's camera sees, with the exposure and the ISO value that were set; its noise is that
-// of the frame that the setting "artist" names (drivers/gphoto/frame_name.h), else of the camera's count of pictures. Bulb,
-// several pictures a release, live view and vendors' extensions are not there.
+// A picture is a DNG of what the bench's camera sees, with the exposure and the ISO value that were set; its noise is
+// that of the frame that the setting "artist" names (drivers/gphoto/frame_name.h), else of the camera's count of
+// pictures. Bulb, several pictures a release, live view and vendors' extensions are not there.
 //
 // Faults are asked for as device "camera": "accept" for a connection, "operation", "capture", "transfer" for requests,
-// "event" for what the camera reports by itself. LateReply comes after late_reply_s. A wedged camera goes on answering and
-// finishes no picture until its client connects anew.
+// "event" for what the camera reports by itself. LateReply comes after late_reply_s. A wedged camera goes on answering
+// and finishes no picture until its client connects anew.
 #pragma once
 
 #include <atomic>

@@ -55,9 +55,9 @@ enum class Response : std::uint16_t {
 enum class EventCode : std::uint16_t { ObjectAdded = 0x4002, CaptureComplete = 0x400D };
 
 enum class Property : std::uint16_t {
-  BatteryLevel = 0x5001,   // percent
-  FNumber = 0x5007,        // hundredths
-  ExposureTime = 0x500D,   // tenths of a millisecond
+  BatteryLevel = 0x5001,  // percent
+  FNumber = 0x5007,       // hundredths
+  ExposureTime = 0x500D,  // tenths of a millisecond
   ExposureMode = 0x500E,
   ExposureIndex = 0x500F,  // ISO
   DateTime = 0x5011,

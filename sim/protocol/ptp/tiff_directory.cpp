@@ -9,7 +9,8 @@
 namespace lumitexel::ptp {
 namespace {
 
-constexpr std::uint16_t kByte = 1, kAscii = 2, kShort = 3, kLong = 4, kRational = 5, kUndefined = 7, kSignedRational = 10;
+constexpr std::uint16_t kByte = 1, kAscii = 2, kShort = 3, kLong = 4, kRational = 5, kUndefined = 7,
+                        kSignedRational = 10;
 
 std::size_t even(std::size_t size) { return size + size % 2; }
 

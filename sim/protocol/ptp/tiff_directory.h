@@ -1,4 +1,5 @@
-// One directory of a little-endian TIFF file: entries by tag, values of up to four bytes in the entry, longer ones behind.
+// One directory of a little-endian TIFF file: entries by tag, values of up to four bytes in the entry, longer ones
+// behind.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +13,8 @@ struct Rational {
   std::int64_t numerator = 0, denominator = 1;  // 32 bits each in the file
 };
 
-// value as a fraction, exact to half a billionth of it or better between 1e-3 and 4e9, and exact for decimals of up to four
-// places. Throws OutOfRange if it is negative, not finite or too large.
+// value as a fraction, exact to half a billionth of it or better between 1e-3 and 4e9, and exact for decimals of up to
+// four places. Throws OutOfRange if it is negative, not finite or too large.
 Rational unsigned_rational(double value);
 
 class TiffDirectory {

@@ -9,9 +9,9 @@ namespace {
 
 TEST(ExposureChoice, ReadsWhatCamerasWrite) {
   const std::vector<std::pair<std::string, double>> table{
-      {"1/250", 0.004}, {"1/8000", 1.25e-4}, {"0.0040s", 0.004}, {"2.5", 2.5},          {"30", 30.0},
-      {"30\"", 30.0},   {"1.3s", 1.3},       {"0,3", 0.3},       {"1 1/3", 4.0 / 3.0}, {"10/13", 10.0 / 13.0},
-      {" 1/60 ", 1 / 60.0}, {"15 s", 15.0},  {"0.8 sec", 0.8},   {"1/2.5", 0.4}};
+      {"1/250", 0.004},     {"1/8000", 1.25e-4}, {"0.0040s", 0.004}, {"2.5", 2.5},         {"30", 30.0},
+      {"30\"", 30.0},       {"1.3s", 1.3},       {"0,3", 0.3},       {"1 1/3", 4.0 / 3.0}, {"10/13", 10.0 / 13.0},
+      {" 1/60 ", 1 / 60.0}, {"15 s", 15.0},      {"0.8 sec", 0.8},   {"1/2.5", 0.4}};
   for (const auto& [text, exposure_s] : table) {
     const auto parsed = parse_exposure_s(text);
     ASSERT_TRUE(parsed) << text;
@@ -20,8 +20,8 @@ TEST(ExposureChoice, ReadsWhatCamerasWrite) {
 }
 
 TEST(ExposureChoice, TakesNothingElseForATime) {
-  for (const char* text : {"", "bulb", "Time", "auto", "x 200", "0", "0.0000s", "1/0", "1/", "/250", "-1", "1/-2", "nan",
-                           "inf", "1e-3", "30m", "1/250/2", "65535/65535x"}) {
+  for (const char* text : {"", "bulb", "Time", "auto", "x 200", "0", "0.0000s", "1/0", "1/", "/250", "-1", "1/-2",
+                           "nan", "inf", "1e-3", "30m", "1/250/2", "65535/65535x"}) {
     EXPECT_FALSE(parse_exposure_s(text)) << text;
   }
 }
@@ -29,7 +29,8 @@ TEST(ExposureChoice, TakesNothingElseForATime) {
 TEST(ExposureChoice, ReadsIsoValues) {
   EXPECT_EQ(parse_iso("100"), 100.0);
   EXPECT_EQ(parse_iso("ISO 25600"), 25600.0);
-  for (const char* text : {"Auto", "Hi 1", "Lo 0.3", "0", "", "100 (auto)", "100-200"}) EXPECT_FALSE(parse_iso(text)) << text;
+  for (const char* text : {"Auto", "Hi 1", "Lo 0.3", "0", "", "100 (auto)", "100-200"})
+    EXPECT_FALSE(parse_iso(text)) << text;
 }
 
 TEST(ExposureChoice, FindsTheNearestThatIsMeant) {

@@ -31,7 +31,8 @@ TEST(GphotoCamera, DeliversWhatTheBenchSaw) {
   for (const CameraSettings settings : {CameraSettings{0.004, 0.0}, {0.0333, gain_db(400)}, {0.001, gain_db(800)}}) {
     const Frame frame = camera->shoot(settings, {}, ++key);
     EXPECT_EQ(objection_to(frame, settings, key), "");
-    // The same state, settings and key once more, in process: the pixels must be the same but for the count in the strip.
+    // The same state, settings and key once more, in process: the pixels must be the same but for the count in the
+    // strip.
     const BenchExposure again = bench->expose(camera->quantised(settings), key, {});
     EXPECT_TRUE(std::equal(frame.samples.begin() + 408, frame.samples.end(), again.samples.begin() + 408));
     EXPECT_EQ(frame.echoed_key, key);

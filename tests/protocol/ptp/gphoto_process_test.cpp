@@ -106,26 +106,24 @@ TEST(GphotoProcess, AStopRequestEndsTheWaitForAnExposure) {
   EXPECT_EQ(objection_to(camera->shoot({0.004, 0.0}, {}, 2), {0.004, 0.0}, 2), "");
 }
 
+// In the middle of a call that does not return.
 TEST(GphotoProcess, TheWorkerEndsWithItsParentEvenIfThatIsKilled) {
-  const auto server = serve(still_bench(), std::make_shared<NoFaults>());
-  const std::string port = server->gphoto_port();
+  const auto server = serve(still_bench(), std::make_shared<OneFault>("camera", Fault::Wedge, 1));
+  const GphotoConnection connection = connection_to(*server, 60.0);
   int pipe_ends[2];
   ASSERT_EQ(pipe(pipe_ends), 0);
   const pid_t parent = fork();
-  if (parent == 0) {  // only what is safe after a fork in a program with threads, and the driver itself
-    GphotoConnection connection;
-    connection.model = "PTP/IP Camera";
-    connection.port = port;
-    const GphotoCamera camera(connection, still_rig().camera.limits, std::make_shared<SystemClock>(),
-                              LUMITEXEL_GPHOTO_WORKER);
+  if (parent == 0) {
+    GphotoCamera camera(connection, still_rig().camera.limits, kClock, LUMITEXEL_GPHOTO_WORKER);
     const pid_t worker = camera.worker_pid();
-    if (write(pipe_ends[1], &worker, sizeof worker) != sizeof worker) _exit(1);
-    pause();
+    if (write(pipe_ends[1], &worker, sizeof worker) == sizeof worker) camera.shoot({0.004, 0.0}, {}, 1);
+    _exit(1);
   }
   pid_t worker = 0;
   ASSERT_EQ(read(pipe_ends[0], &worker, sizeof worker), static_cast<ssize_t>(sizeof worker));
   close(pipe_ends[0]);
   close(pipe_ends[1]);
+  kClock->sleep_until(kClock->now_s() + 0.5, {});
   EXPECT_TRUE(is_alive(worker));
   ::kill(parent, SIGKILL);
   waitpid(parent, nullptr, 0);

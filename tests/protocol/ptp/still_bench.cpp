@@ -13,7 +13,11 @@ namespace lumitexel {
 
 RigDescription still_rig() {
   RigDescription rig;
-  rig.camera.limits = {.width_px = 64, .height_px = 48, .bits = 14, .mosaic = Mosaic::Rggb, .exposure_min_s = 1e-3,
+  rig.camera.limits = {.width_px = 64,
+                       .height_px = 48,
+                       .bits = 14,
+                       .mosaic = Mosaic::Rggb,
+                       .exposure_min_s = 1e-3,
                        .exposure_max_s = 30.0};
   rig.camera.limits.exposure_choices_s = {0.001, 0.002, 0.004, 0.0125, 0.0333, 0.1, 30.0};
   rig.camera.limits.gain_min_db = 0.0;
@@ -75,7 +79,8 @@ std::string objection_to(const Frame& frame, const CameraSettings& settings, std
     text << "taken with " << strip->settings.exposure_s << " s, " << strip->settings.gain_db << " dB; ";
   }
   if (!same_settings(frame.reported, settings)) text << "reports " << frame.reported.exposure_s << " s; ";
-  if (strip->frame_key != key || frame.frame_key != key) text << "its pixels name the frame " << strip->frame_key << "; ";
+  if (strip->frame_key != key || frame.frame_key != key)
+    text << "its pixels name the frame " << strip->frame_key << "; ";
   if (decode_camera_raw(frame.camera_file, "file").samples != frame.samples) text << "its file holds other pixels; ";
   if (frame.width_px != rig.camera.limits.width_px || frame.height_px != rig.camera.limits.height_px) text << "size; ";
   return text.str();
