@@ -17,6 +17,7 @@ class ReducedImport : public testing::Test {
  protected:
   ReducedImport() {
     layout_.replace("images.txt", "1 1 0 0", "# poses\n1 1 0 0");
+    layout_.replace("images.txt", "a.exr\n\n", "a.exr\n5 5 -1\n");  // the image's points go with it
     layout_.replace("lights.csv", "b.exr", "# a second light\nb.exr");
     import_session(layout_.sources(), layout_.session(), progress_);
   }

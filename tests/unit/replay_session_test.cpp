@@ -104,6 +104,39 @@ TEST_F(ReplaySession, FollowsARecordingThroughFaultsThatEndedIt) {
   expect_same_journal();
 }
 
+TEST_F(ReplaySession, FollowsARecordingThroughAStopAndALaterResume) {
+  recorded_.capture({[](int trigger) {
+                       if (trigger == 7) throw Cancelled("fake camera: told to stop");
+                     },
+                     {}});
+  recorded_.capture();
+  const std::vector<FrameRecord> frames = recorded_.open()->frames();
+  ASSERT_EQ(frames.size(), 27u);
+  ASSERT_LT(frames[6].device_time_s, frames[5].device_time_s);  // the camera's clock has begun anew
+  ASSERT_TRUE(recorded_.open()->discards().empty());
+  replay(select());
+  expect_same_journal();
+}
+
+// Twice the same shot: stopped amid its attempts, tried again later.
+TEST_F(ReplaySession, CountsTheAttemptsOfEveryRunAnew) {
+  recorded_.capture({[](int trigger) {
+                       if (trigger == 4) throw Timeout("fake camera: late");
+                       if (trigger == 5) throw Cancelled("fake camera: told to stop");
+                     },
+                     {}});
+  recorded_.capture({[](int trigger) {
+                       if (trigger == 1) throw Timeout("fake camera: late again");
+                     },
+                     {}});
+  const std::vector<DiscardRecord> discards = recorded_.open()->discards();
+  ASSERT_EQ(discards.size(), 2u);
+  EXPECT_EQ(discards[0].shot_id, discards[1].shot_id);
+  EXPECT_EQ(discards[1].attempt, 1);
+  replay(select());
+  expect_same_journal();
+}
+
 TEST_F(ReplaySession, WhatTheRecordingLacksStaysMissing) {
   recorded_.capture({[](int trigger) {
                        if (trigger >= 20) throw Timeout("fake camera: wedged");
@@ -185,6 +218,34 @@ TEST_F(ReplaySession, GoesOnAfterAStopWithoutDoingAnythingTwice) {
     EXPECT_EQ(play_missing_shots(source, session, progress, {}).frames, 17);
   }
   expect_same_journal();
+}
+
+TEST_F(ReplaySession, KilledAmidAShotItDoesNotRepeatWhatItHasDiscarded) {
+  recorded_.capture({[](int trigger) {
+                       if (trigger == 27) throw Timeout("fake camera: late");
+                     },
+                     {}});
+  replay(select());
+  SqliteDatabase(recorded_ / "replay" / "session.db", DatabaseMode::ReadWrite).run("DELETE FROM frames WHERE shot_id = 27");
+  {
+    SessionStore session = SessionStore::open(recorded_ / "replay", OpenMode::ReadWrite);
+    NoProgress progress;
+    EXPECT_EQ(play_missing_shots(recorded_.open(), session, progress, {}).frames, 1);
+  }
+  EXPECT_EQ(discard_lines(opened()), discard_lines(*recorded_.open()));
+  EXPECT_EQ(opened().content_sha256(), recorded_.open()->content_sha256());
+}
+
+TEST_F(ReplaySession, AFaultThatWasNotRecordedStopsIt) {
+  recorded_.capture({[](int trigger) {
+                       if (trigger >= 20) throw Timeout("fake camera: wedged");
+                     },
+                     {}});
+  // A reading that no sequencer lets pass: the replay may not take it for the end that was recorded.
+  SqliteDatabase(recorded_.path() / "session.db", DatabaseMode::ReadWrite)
+      .run("UPDATE frames SET light_azimuth_deg = light_azimuth_deg + 3 WHERE shot_id = 4");
+  EXPECT_THROW(replay(select()), Protocol);
+  EXPECT_EQ(opened().frames().size(), 3u);
 }
 
 TEST_F(ReplaySession, ADamagedRecordedFrameIsNotPlayed) {
