@@ -87,7 +87,7 @@ TEST_P(ModbusDevices, HaltStopsAMovingAxisWithAndWithoutAStopCommand) {
     bench.bench->start_move(BenchAxis::LightAzimuth, 100.0);
     bench.real_clock->sleep_until(bench.real_clock->now_s() + 0.05, {});
     azimuth->halt();
-    bench.real_clock->sleep_until(bench.real_clock->now_s() + 0.3, {});  // for what it overshot by
+    bench.real_clock->sleep_until(bench.real_clock->now_s() + 0.1, {});  // for what it overshot by
     const BenchMotion after = bench.bench->motion(BenchAxis::LightAzimuth);
     EXPECT_FALSE(after.moving);
     EXPECT_GT(after.position, 0.0);

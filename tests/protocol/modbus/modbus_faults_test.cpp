@@ -104,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(In, EveryFault,
 
 // A single fault, wherever it strikes, changes nothing in what comes of the verb.
 TEST_P(EveryFault, ThatStrikesOnceIsOvercome) {
-  constexpr int kPlaces = 4;
+  constexpr int kPlaces = 6;
   const ModbusBench bench(settings_for(GetParam()));
   Doing doing(GetParam(), bench);
   int struck = 0;
@@ -127,7 +127,8 @@ TEST_P(EveryFault, ThatStrikesOnceIsOvercome) {
 TEST_P(EveryFault, ThatStaysIsAnErrorThatNamesTheController) {
   ModbusServerSettings settings = settings_for(GetParam());
   settings.endpoint.give_up_s = 0.1;
-  settings.endpoint.response_timeout_s = 0.02;
+  // Exceptions come at once; a busy machine's own delay must not be the last thing that happens.
+  if (std::get<2>(GetParam()) == Fault::Exception) settings.endpoint.response_timeout_s = 0.5;
   const ModbusBench bench(settings);
   Doing doing(GetParam(), bench);
   const Fault fault = std::get<2>(GetParam());
@@ -150,7 +151,7 @@ TEST_P(EveryFault, ThatStaysIsAnErrorThatNamesTheController) {
   });
   EXPECT_LT(took_s, 1.5);
   bench.faults->disarm();
-  bench.real_clock->sleep_until(bench.real_clock->now_s() + 0.1, {});  // a port that is unplugged comes back
+  if (fault == Fault::Disconnect) bench.real_clock->sleep_until(bench.real_clock->now_s() + 0.1, {});  // plugged in again
   doing.prepare(2);
   doing.act();
   doing.expect_done();

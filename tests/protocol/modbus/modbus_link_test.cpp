@@ -48,7 +48,7 @@ void expect_no_late_reply_taken(const ModbusServerSettings& settings) {
 }
 
 TEST_P(Link, ALateReplyNeverAnswersALaterRequest) {
-  for (const double late_by_s : {0.04, 0.05, 0.11}) {
+  for (const double late_by_s : {0.025, 0.035, 0.075}) {
     SCOPED_TRACE(late_by_s);
     ModbusServerSettings settings = quick_settings(GetParam());
     settings.late_by_s = late_by_s;
@@ -60,7 +60,7 @@ TEST_P(Link, ALateReplyNeverAnswersALaterRequest) {
 TEST_P(Link, ALateReplyOfAControllerWithoutDiagnosticsAnswersNoLaterRequest) {
   ModbusServerSettings settings = quick_settings(GetParam());
   settings.knows_diagnostics = false;
-  settings.late_by_s = 0.045;
+  settings.late_by_s = 0.03;
   expect_no_late_reply_taken(settings);
 }
 
