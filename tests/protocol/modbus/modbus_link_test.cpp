@@ -180,7 +180,7 @@ TEST(TcpLink, ConnectingToAnAddressThatDoesNotAnswerHasADeadline) {
   const double took_s = seconds_of(
       [&] { message = message_of([&] { ModbusLink link(endpoint, std::make_shared<SystemClock>()); }); });
   EXPECT_TRUE(holds(message, "controller far away: connecting: cannot connect: no answer within 0.1 s")) << message;
-  EXPECT_LT(took_s, 1.2);
+  EXPECT_LT(took_s, 0.5);  // what the library would wait by itself
 }
 
 TEST(TcpLink, AConnectionThatIsAcceptedAndDroppedOrNeverAnsweredIsTriedAgain) {
