@@ -94,6 +94,8 @@ ModbusBench::ModbusBench(const ModbusServerSettings& given, double haste)
   server = std::make_unique<ModbusControllerServer>(settings, bench, faults);
   settings.endpoint = server->endpoint();
   link = new_link();
+  // By TCP a client may think itself connected before the server has accepted it, which is an operation, too.
+  link->read(settings.axes.at(BenchAxis::Turntable).position, "turntable position");
 }
 
 std::shared_ptr<ModbusLink> ModbusBench::new_link() const {
