@@ -68,11 +68,11 @@ class ModbusLink {
   using Request = std::function<WireAnswer(ModbusWire&, double timeout_s)>;
   WireAnswer attempt(const Request& request);
   WireAnswer make_ready(double timeout_s);
-  void find_again(double timeout_s);
+  WireAnswer found_again(double timeout_s);
   void settle(const WireAnswer& answer);
   void exchange(const std::string& asked, const Request& request, std::stop_token stop);
   [[noreturn]] void give_up(const std::string& asked, const WireAnswer& answer);
-  bool all_written(const std::vector<ModbusWrite>& writes, double timeout_s);
+  bool all_written(const std::vector<ModbusWrite>& writes, const WireAnswer& ready, double timeout_s);
 
   ModbusEndpoint endpoint_;
   std::shared_ptr<Clock> clock_;

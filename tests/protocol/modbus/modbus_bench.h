@@ -26,7 +26,7 @@ struct ModbusMaps {
 };
 ModbusMaps mixed_maps();
 
-// Short times, so that faults cost little: 0.03 s to a timeout, late replies after 0.05 s.
+// Short times, so that faults cost little: 0.02 s to a timeout, late replies after 0.035 s.
 ModbusServerSettings quick_settings(Transport transport);
 
 // The members may be replaced by a test: the server by a restarted one, for instance.

@@ -104,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(In, EveryFault,
 
 // A single fault, wherever it strikes, changes nothing in what comes of the verb.
 TEST_P(EveryFault, ThatStrikesOnceIsOvercome) {
-  constexpr int kPlaces = 4;
+  constexpr int kPlaces = 6;
   const ModbusBench bench(settings_for(GetParam()));
   Doing doing(GetParam(), bench);
   int struck = 0;
@@ -126,13 +126,15 @@ TEST_P(EveryFault, ThatStrikesOnceIsOvercome) {
 // same devices work again.
 TEST_P(EveryFault, ThatStaysIsAnErrorThatNamesTheController) {
   ModbusServerSettings settings = settings_for(GetParam());
-  settings.endpoint.give_up_s = 0.1;
-  settings.endpoint.response_timeout_s = 0.02;
+  settings.endpoint.give_up_s = 0.06;
+  // Exceptions come at once; a busy machine's own delay must not be the last thing that happens.
+  if (std::get<2>(GetParam()) == Fault::Exception) settings.endpoint.response_timeout_s = 0.1;
   const ModbusBench bench(settings);
   Doing doing(GetParam(), bench);
   const Fault fault = std::get<2>(GetParam());
   const Verb verb = std::get<1>(GetParam());
   const bool silent = verb == Verb::ForceOff || verb == Verb::Halt || verb == Verb::MakeSafe;  // these never throw
+  const bool serial = std::get<0>(GetParam()) == Transport::Rtu;
   doing.prepare(1);
   bench.faults->arm_all(fault);
   const double took_s = seconds_of([&] {
@@ -150,7 +152,7 @@ TEST_P(EveryFault, ThatStaysIsAnErrorThatNamesTheController) {
   });
   EXPECT_LT(took_s, 1.5);
   bench.faults->disarm();
-  bench.real_clock->sleep_until(bench.real_clock->now_s() + 0.1, {});  // a port that is unplugged comes back
+  if (fault == Fault::Disconnect && serial) bench.real_clock->sleep_until(bench.real_clock->now_s() + 0.1, {});  // plugged in again
   doing.prepare(2);
   doing.act();
   doing.expect_done();
@@ -161,7 +163,7 @@ TEST(ManyFaults, AtRandomNeverMakeAReadingOrAMotionWrong) {
     const ModbusBench bench(transport);
     const auto table = bench.axis(BenchAxis::Turntable);
     const auto elevation = bench.axis(BenchAxis::LightElevation);
-    for (int i = 0; i < 18; ++i) {
+    for (int i = 0; i < 12; ++i) {
       SCOPED_TRACE(std::string(to_string(transport)) + " " + std::to_string(i));
       bench.faults->arm_one(kConnectionFaults[static_cast<std::size_t>(i) % kConnectionFaults.size()], i % 7);
       table->move_to(3.7 * i, {});
