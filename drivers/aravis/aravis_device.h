@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdint>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "drivers/aravis/aravis_handle.h"
@@ -28,6 +29,9 @@ class AravisDevice {
   // Set once the camera's heartbeat has failed or showed that somebody else is in control.
   bool control_lost() const { return control_lost_; }
   void take_control();  // again; throws Timeout, Disconnected
+
+  // Throws Protocol.
+  GHandle<ArvChunkParser> chunk_parser() const;
 
   // All of these throw Timeout, Disconnected, Protocol, the setters OutOfRange too.
   bool has(const std::string& feature) const;
