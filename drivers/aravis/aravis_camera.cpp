@@ -112,6 +112,7 @@ void AravisCamera::recover(std::stop_token stop) {
   if (link_) {
     try {
       link_->device.take_control();
+      link_->device.require_same();  // the description in hand is the old one's
       return restart();
     } catch (const Timeout&) {
       link_->failed = true;  // nobody there; below

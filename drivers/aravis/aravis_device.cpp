@@ -44,6 +44,7 @@ GHandle<ArvCamera> open_by_id(const std::string& id, const std::string& name) {
 AravisDevice::AravisDevice(const std::string& address, std::string name)
     : name_(std::move(name)), camera_(is_ip_address(address) ? open_gige(address, name_) : open_by_id(address, name_)) {
   if (!camera_) throw Disconnected(name_ + ": connecting: no such camera");
+  identity_ = read_identity();
   // By default the library accepts any number for any feature.
   arv_camera_set_range_check_policy(camera(), ARV_RANGE_CHECK_POLICY_ENABLE);
   signal_ = g_signal_connect(arv_camera_get_device(camera()), "control-lost", G_CALLBACK(on_control_lost),
@@ -60,6 +61,19 @@ void AravisDevice::take_control() {
   arv_gv_device_take_control(ARV_GV_DEVICE(arv_camera_get_device(camera())), error);
   error.require(name_, "taking control");
   control_lost_ = false;
+}
+
+std::string AravisDevice::read_identity() const {
+  std::string identity;
+  for (const char* feature : {"DeviceVendorName", "DeviceModelName", "DeviceSerialNumber"}) {
+    if (has(feature)) identity += (identity.empty() ? "" : " ") + text(feature);
+  }
+  return identity;
+}
+
+void AravisDevice::require_same() const {
+  const std::string now = read_identity();
+  if (now != identity_) throw Disconnected(name_ + ": it was a " + identity_ + ", now a " + now + " answers");
 }
 
 GHandle<ArvChunkParser> AravisDevice::chunk_parser() const {

@@ -30,6 +30,8 @@ class AravisDevice {
   bool control_lost() const { return control_lost_; }
   void take_control();  // again; throws Timeout, Disconnected
 
+  // Throws Disconnected if another camera than the one that was opened answers by now.
+  void require_same() const;
   // Throws Protocol.
   GHandle<ArvChunkParser> chunk_parser() const;
 
@@ -59,12 +61,14 @@ class AravisDevice {
   }
 
  private:
+  std::string read_identity() const;
   static void on_control_lost(ArvDevice* device, std::atomic<bool>* lost);
 
   std::string name_;
   GHandle<ArvCamera> camera_;
   std::atomic<bool> control_lost_ = false;
   unsigned long signal_ = 0;
+  std::string identity_;
 };
 
 }  // namespace lumitexel
