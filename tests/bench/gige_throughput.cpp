@@ -18,6 +18,7 @@
 #include "sim/hastened_clock.h"
 #include "sim/protocol/gige/gige_camera_server.h"
 #include "sim/protocol/gige/gvsp_stream.h"
+#include "sim/protocol/gige/pixel_packing.h"
 
 namespace lumitexel {
 namespace {
@@ -78,6 +79,19 @@ double bare_MB_per_s(int frames, double pace_MB_per_s) {
   return static_cast<double>(bytes) / 1e6 / took_s;
 }
 
+// What the simulated camera itself needs for a frame before the first packet: not the driver's doing.
+double camera_s_per_frame(SimulatedBench& bench) {
+  SystemClock clock;
+  const double start_s = clock.now_s();
+  constexpr int kTimes = 5;
+  for (int i = 0; i < kTimes; ++i) {
+    const BenchExposure exposure = bench.expose({1e-4, 0.0}, 1, {});
+    const std::vector<std::uint16_t> region(exposure.samples);
+    gige::packed(gige::pixel_formats(Mosaic::Mono, 16).front(), region);
+  }
+  return (clock.now_s() - start_s) / kTimes;
+}
+
 double driver_MB_per_s(int frames, double pace_MB_per_s) {
   RigDescription rig;
   rig.camera.limits = {.width_px = kWidth_px, .height_px = kHeight_px, .bits = 16, .exposure_min_s = 1e-5,
@@ -106,7 +120,10 @@ double driver_MB_per_s(int frames, double pace_MB_per_s) {
   const double took_s = clock.now_s() - start_s;
   std::printf("driver: %d frames, %d discarded, %lu packets resent\n", frames, discarded,
               static_cast<unsigned long>(server.packets_resent()));
-  return kFrame_MB * frames / took_s;
+  const double camera_s = camera_s_per_frame(*bench) * frames;
+  std::printf("driver: %.0f MB/s all in all, the simulated camera's exposing and packing included\n",
+              kFrame_MB * frames / took_s);
+  return kFrame_MB * frames / (took_s - camera_s);
 }
 
 }  // namespace
@@ -117,6 +134,6 @@ int main(int argc, char** argv) {
   const double pace = argc > 2 ? std::max(0.0, std::atof(argv[2])) : 0.0;
   lumitexel::print_machine();
   const double bare = lumitexel::bare_MB_per_s(frames, pace), driver = lumitexel::driver_MB_per_s(frames, pace);
-  std::printf("bare client %.0f MB/s, driver %.0f MB/s (exposing, packing, checking and decoding included), ratio %.2f\n",
+  std::printf("bare client %.0f MB/s, driver %.0f MB/s (checking and decoding included, the camera's own time not), ratio %.2f\n",
               bare, driver, driver / bare);
 }
