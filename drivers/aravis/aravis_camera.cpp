@@ -53,10 +53,11 @@ void AravisCamera::connect() {
 
 // Everything is set anew, whatever the camera remembers; late frames go with the old stream.
 void AravisCamera::restart() {
+  ++restarts_;
   link_->applied.reset();
   link_->stream.reset();
   link_->setup = set_up(link_->device, connection_, limits_);
-  link_->chunks.reset(link_->setup.any_chunk() ? arv_camera_create_chunk_parser(link_->device.camera()) : nullptr);
+  if (link_->setup.any_chunk()) link_->chunks = link_->device.chunk_parser();
   link_->stream = std::make_unique<AravisStream>(link_->device, link_->setup.payload_bytes);
 }
 
@@ -94,6 +95,9 @@ Frame AravisCamera::trigger(std::uint64_t frame_key, std::stop_token stop) {
   }
   Frame frame = received_frame(buffer.get(), camera.chunks.get(), camera.setup, limits_, connection_.frame_name_chunk,
                                name());
+  // A camera counts anew after each restart, which must not make a new frame look like an old one; that it is new, its
+  // time tells. Without that, the bare count is all there is.
+  if (dated) frame.device_frame_id |= restarts_ << 32;
   if (std::isnan(frame.reported.exposure_s) || std::isnan(frame.reported.gain_db)) {
     const CameraSettings registers = read_settings(camera.device, camera.setup);
     if (std::isnan(frame.reported.exposure_s)) frame.reported.exposure_s = registers.exposure_s;
@@ -108,6 +112,7 @@ void AravisCamera::recover(std::stop_token stop) {
   if (link_) {
     try {
       link_->device.take_control();
+      link_->device.require_same();  // the description in hand is the old one's
       return restart();
     } catch (const Timeout&) {
       link_->failed = true;  // nobody there; below

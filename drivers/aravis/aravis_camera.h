@@ -8,6 +8,7 @@
 // tells none.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -48,6 +49,7 @@ class AravisCamera final : public Camera {
   CameraLimits limits_;
   std::shared_ptr<Clock> clock_;
   std::unique_ptr<Link> link_;  // empty while not connected
+  std::uint64_t restarts_ = 0;
 };
 
 }  // namespace lumitexel

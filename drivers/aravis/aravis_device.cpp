@@ -1,39 +1,22 @@
 #include "drivers/aravis/aravis_device.h"
 
-#include <arpa/inet.h>
-#include <sys/socket.h>
-#include <unistd.h>
+#include <mutex>
 
+#include "drivers/aravis/gige_presence.h"
 #include "drivers/error.h"
 
 namespace lumitexel {
 namespace {
 
-bool is_ip_address(const std::string& address) {
-  in_addr parsed;
-  return inet_pton(AF_INET, address.c_str(), &parsed) == 1;
-}
-
-// The address of ours that packets to this device leave from: routing decides, nothing is sent. Asking the routing
-// table instead of broadcasting finds the right one of several interfaces, and at once.
-std::string own_address_towards(const std::string& device_address, const std::string& name) {
-  sockaddr_in device{}, own{};
-  device.sin_family = AF_INET;
-  device.sin_port = htons(3956);
-  inet_pton(AF_INET, device_address.c_str(), &device.sin_addr);
-  socklen_t length = sizeof own;
-  const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  const bool routed = probe >= 0 && connect(probe, reinterpret_cast<const sockaddr*>(&device), sizeof device) == 0 &&
-                      getsockname(probe, reinterpret_cast<sockaddr*>(&own), &length) == 0;
-  if (probe >= 0) close(probe);
-  if (!routed) throw Disconnected(name + ": connecting: no network interface leads to " + device_address);
-  char text[INET_ADDRSTRLEN] = {};
-  inet_ntop(AF_INET, &own.sin_addr, text, sizeof text);
-  return text;
+// The library parses descriptions in static memory: two threads that open cameras at once destroy each other's.
+std::mutex& parser_mutex() {
+  static std::mutex mutex;
+  return mutex;
 }
 
 GHandle<ArvCamera> open_gige(const std::string& address, const std::string& name) {
-  const GHandle<GInetAddress> own(g_inet_address_new_from_string(own_address_towards(address, name).c_str()));
+  const GHandle<GInetAddress> own(g_inet_address_new_from_string(own_address_facing(address, name).c_str()));
+  const std::lock_guard parsing(parser_mutex());
   const GHandle<GInetAddress> remote(g_inet_address_new_from_string(address.c_str()));
   GErrorSlot error;
   const GHandle<ArvDevice> device(arv_gv_device_new(own.get(), remote.get(), error));
@@ -49,6 +32,7 @@ GHandle<ArvCamera> open_gige(const std::string& address, const std::string& name
 }
 
 GHandle<ArvCamera> open_by_id(const std::string& id, const std::string& name) {
+  const std::lock_guard parsing(parser_mutex());
   GErrorSlot error;
   GHandle<ArvCamera> camera(arv_camera_new(id.c_str(), error));
   error.require(name, "connecting");
@@ -60,6 +44,7 @@ GHandle<ArvCamera> open_by_id(const std::string& id, const std::string& name) {
 AravisDevice::AravisDevice(const std::string& address, std::string name)
     : name_(std::move(name)), camera_(is_ip_address(address) ? open_gige(address, name_) : open_by_id(address, name_)) {
   if (!camera_) throw Disconnected(name_ + ": connecting: no such camera");
+  identity_ = read_identity();
   // By default the library accepts any number for any feature.
   arv_camera_set_range_check_policy(camera(), ARV_RANGE_CHECK_POLICY_ENABLE);
   signal_ = g_signal_connect(arv_camera_get_device(camera()), "control-lost", G_CALLBACK(on_control_lost),
@@ -76,6 +61,26 @@ void AravisDevice::take_control() {
   arv_gv_device_take_control(ARV_GV_DEVICE(arv_camera_get_device(camera())), error);
   error.require(name_, "taking control");
   control_lost_ = false;
+}
+
+std::string AravisDevice::read_identity() const {
+  std::string identity;
+  for (const char* feature : {"DeviceVendorName", "DeviceModelName", "DeviceSerialNumber"}) {
+    if (has(feature)) identity += (identity.empty() ? "" : " ") + text(feature);
+  }
+  return identity;
+}
+
+void AravisDevice::require_same() const {
+  const std::string now = read_identity();
+  if (now != identity_) throw Disconnected(name_ + ": it was a " + identity_ + ", now a " + now + " answers");
+}
+
+GHandle<ArvChunkParser> AravisDevice::chunk_parser() const {
+  const std::lock_guard parsing(parser_mutex());
+  GHandle<ArvChunkParser> parser(arv_camera_create_chunk_parser(camera()));
+  if (!parser) throw Protocol(name_ + ": asked how to read its chunks, its description does not say");
+  return parser;
 }
 
 bool AravisDevice::has(const std::string& feature) const {

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdint>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "drivers/aravis/aravis_handle.h"
@@ -28,6 +29,11 @@ class AravisDevice {
   // Set once the camera's heartbeat has failed or showed that somebody else is in control.
   bool control_lost() const { return control_lost_; }
   void take_control();  // again; throws Timeout, Disconnected
+
+  // Throws Disconnected if another camera than the one that was opened answers by now.
+  void require_same() const;
+  // Throws Protocol.
+  GHandle<ArvChunkParser> chunk_parser() const;
 
   // All of these throw Timeout, Disconnected, Protocol, the setters OutOfRange too.
   bool has(const std::string& feature) const;
@@ -55,12 +61,14 @@ class AravisDevice {
   }
 
  private:
+  std::string read_identity() const;
   static void on_control_lost(ArvDevice* device, std::atomic<bool>* lost);
 
   std::string name_;
   GHandle<ArvCamera> camera_;
   std::atomic<bool> control_lost_ = false;
   unsigned long signal_ = 0;
+  std::string identity_;
 };
 
 }  // namespace lumitexel

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstring>
 #include <utility>
 
 namespace lumitexel {
@@ -69,6 +71,8 @@ std::vector<std::uint16_t> decoded(const PixelLayout& layout, std::span<const st
   std::vector<std::uint16_t> samples(pixels);
   if (layout.packing == PixelPacking::OneByte) {
     std::copy_n(bytes.begin(), pixels, samples.begin());
+  } else if (layout.packing == PixelPacking::TwoBytes && std::endian::native == std::endian::little) {
+    std::memcpy(samples.data(), bytes.data(), 2 * pixels);
   } else if (layout.packing == PixelPacking::TwoBytes) {
     for (std::size_t i = 0; i < pixels; ++i) {
       samples[i] = static_cast<std::uint16_t>(bytes[2 * i] | bytes[2 * i + 1] << 8);

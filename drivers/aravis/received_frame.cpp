@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <span>
 
 #include "drivers/error.h"
@@ -34,10 +36,11 @@ std::vector<std::uint16_t> samples_of(ArvBuffer* buffer, const CameraSetup& setu
   }
   std::vector<std::uint16_t> samples = decoded(setup.layout, std::span(data, size), pixels);
   const unsigned most = (1u << limits.bits) - 1u;
-  const auto largest = std::max_element(samples.begin(), samples.end());
-  if (*largest > most) {
-    throw Protocol(camera + ": bits = " + std::to_string(limits.bits) + " in the rig's description, the frame has a sample of " +
-                   std::to_string(*largest) + "; the camera may shift its samples up");
+  // All bits that any sample has: found much sooner than the largest.
+  const unsigned used = std::accumulate(samples.begin(), samples.end(), 0u, std::bit_or<unsigned>());
+  if (used > most) {
+    throw Protocol(camera + ": bits = " + std::to_string(limits.bits) + " in the rig's description, the frame has samples beyond, up to " +
+                   std::to_string(*std::max_element(samples.begin(), samples.end())) + "; the camera may shift its samples up");
   }
   return samples;
 }

@@ -1,5 +1,8 @@
 #include "sim/protocol/gige/pixel_packing.h"
 
+#include <bit>
+#include <cstring>
+
 namespace lumitexel::gige {
 namespace {
 
@@ -59,14 +62,19 @@ std::size_t packed_bytes(const PixelFormat& format, std::size_t pixels) {
 std::vector<std::uint8_t> packed(const PixelFormat& format, std::span<const std::uint16_t> samples) {
   if (format.packing == Packing::OneByte) return {samples.begin(), samples.end()};
   std::vector<std::uint8_t> bytes;
-  bytes.reserve(packed_bytes(format, samples.size()));
   if (format.packing == Packing::TwoBytes) {
-    for (const std::uint16_t sample : samples) {
-      bytes.push_back(static_cast<std::uint8_t>(sample));
-      bytes.push_back(static_cast<std::uint8_t>(sample >> 8));
+    bytes.resize(2 * samples.size());
+    if (std::endian::native == std::endian::little) {
+      std::memcpy(bytes.data(), samples.data(), bytes.size());
+      return bytes;
+    }
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      bytes[2 * i] = static_cast<std::uint8_t>(samples[i]);
+      bytes[2 * i + 1] = static_cast<std::uint8_t>(samples[i] >> 8);
     }
     return bytes;
   }
+  bytes.reserve(packed_bytes(format, samples.size()));
   for (std::size_t i = 0; i < samples.size(); i += 2) {
     append_pair(bytes, format.packing, samples[i], i + 1 < samples.size() ? samples[i + 1] : 0u);
   }
