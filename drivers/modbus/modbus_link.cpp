@@ -100,18 +100,27 @@ bool ModbusLink::write_urgently(const std::vector<ModbusWrite>& writes, double t
   try {
     const RequestTurns::Turn turn(turns_, true, endpoint_.give_up_s);
     if (!turn.taken()) return false;
-    if (all_written(writes, timeout_s)) return true;
+    if (all_written(writes, make_ready(timeout_s), timeout_s)) return true;
     // All of them again, not only those that seem to have failed: on a serial line one write's late acknowledgement
-    // looks like the next one's. Exceptions leave the connection as it is.
-    return all_written(again.empty() ? writes : again, timeout_s);
+    // looks like the next one's.
+    return all_written(again.empty() ? writes : again, found_again(timeout_s), timeout_s);
   } catch (...) {
     return false;
   }
 }
 
-bool ModbusLink::all_written(const std::vector<ModbusWrite>& writes, double timeout_s) {
-  // On a line that is out of step nothing can be believed, but everything can still be said.
-  const WireAnswer ready = make_ready(timeout_s);
+// A serial adapter that lost its contact takes some time to appear again.
+WireAnswer ModbusLink::found_again(double timeout_s) {
+  constexpr int kLooks = 4;
+  for (int look = 1;; ++look) {
+    const WireAnswer ready = make_ready(timeout_s);
+    if (ready.kind != Kind::Broken || look == kLooks) return ready;
+    clock_->sleep_until(clock_->now_s() + 0.5 * timeout_s, {});
+  }
+}
+
+// On a line that is out of step nothing can be believed, but everything can still be said.
+bool ModbusLink::all_written(const std::vector<ModbusWrite>& writes, const WireAnswer& ready, double timeout_s) {
   if (ready.kind == Kind::Broken) return false;
   bool all = ready.done();
   for (const ModbusWrite& write : writes) {

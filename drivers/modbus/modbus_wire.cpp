@@ -95,7 +95,9 @@ WireAnswer ModbusWire::connect(double timeout_s) {
   context_->close();
   context_->set_deadline(timeout_s);
   if (modbus_connect(context_->modbus) != 0) {
-    const std::string cause = errno == ETIMEDOUT ? no_answer(timeout_s) : modbus_strerror(errno);
+    // The library says "in progress" when it has waited for long enough.
+    const bool late = errno == ETIMEDOUT || errno == EINPROGRESS;
+    const std::string cause = late ? no_answer(timeout_s) : modbus_strerror(errno);
     return {WireAnswer::Kind::Broken, "cannot connect: " + cause};
   }
   context_->open = true;

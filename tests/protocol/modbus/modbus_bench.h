@@ -10,6 +10,7 @@
 #include "drivers/modbus/modbus_link.h"
 #include "drivers/modbus/modbus_safety.h"
 #include "sim/protocol/modbus/modbus_controller_server.h"
+#include "tests/unit/temporary_folder.h"
 
 namespace lumitexel {
 
@@ -25,7 +26,7 @@ struct ModbusMaps {
 };
 ModbusMaps mixed_maps();
 
-// Short times, so that faults cost little: 0.05 s to a timeout, late replies after 0.08 s.
+// Short times, so that faults cost little: 0.02 s to a timeout, late replies after 0.035 s.
 ModbusServerSettings quick_settings(Transport transport);
 
 // The members may be replaced by a test: the server by a restarted one, for instance.
@@ -40,6 +41,7 @@ struct ModbusBench {
   std::unique_ptr<ModbusSafety> safety() const;
   void restart_server();  // at the same address
 
+  TemporaryFolder folder;  // of the serial port's name, which outlives a restart
   std::shared_ptr<Clock> real_clock, bench_clock;
   std::shared_ptr<SimulatedBench> bench;
   std::shared_ptr<ArmedFaults> faults = std::make_shared<ArmedFaults>();

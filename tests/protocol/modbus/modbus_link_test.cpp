@@ -20,8 +20,9 @@ INSTANTIATE_TEST_SUITE_P(Over, Link, testing::Values(Transport::Tcp, Transport::
 
 bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-// Two registers of the same kind and size, whose replies look the same: the worst case for a late one.
-void expect_no_late_reply_taken(const ModbusServerSettings& settings) {
+// Two registers of the same kind and size, whose replies look the same: the worst case for a late one. Returns how
+// often replies were late for so long that the reading failed; on a busy machine the client may be late, too.
+int expect_no_late_reply_taken(const ModbusServerSettings& settings) {
   ModbusServerSettings given = settings;
   given.endpoint.give_up_s = 0.1;
   const ModbusBench bench(given);
@@ -30,9 +31,14 @@ void expect_no_late_reply_taken(const ModbusServerSettings& settings) {
   bench.bench_clock->sleep_until(bench.bench_clock->now_s() + 10.0, {});
   const ModbusRegister table = given.axes.at(BenchAxis::Turntable).position;
   const ModbusRegister azimuth = given.axes.at(BenchAxis::LightAzimuth).position;
-  for (int i = 0; i < 4; ++i) {
+  int failed = 0;
+  for (int i = 0; i < 2; ++i) {
     bench.faults->arm_all(Fault::LateReply);
-    EXPECT_THROW(bench.link->read(azimuth, "azimuth position"), Disconnected);
+    try {
+      EXPECT_EQ(bench.link->read(azimuth, "azimuth position"), -33.5);
+    } catch (const Disconnected&) {
+      ++failed;
+    }
     bench.faults->disarm();
     // The line may still be busy with replies that are late: then it says so, and never another register's value.
     for (int tries = 0; tries < 10; ++tries) {
@@ -41,26 +47,29 @@ void expect_no_late_reply_taken(const ModbusServerSettings& settings) {
         EXPECT_EQ(bench.link->read(azimuth, "azimuth position"), -33.5);
         break;
       } catch (const Disconnected&) {
-        ASSERT_LT(tries, 9);
+        EXPECT_LT(tries, 9);
       }
     }
   }
+  return failed;
 }
 
 TEST_P(Link, ALateReplyNeverAnswersALaterRequest) {
-  for (const double late_by_s : {0.06, 0.08, 0.17}) {
+  int failed = 0;
+  for (const double late_by_s : {0.025, 0.035, 0.075}) {
     SCOPED_TRACE(late_by_s);
     ModbusServerSettings settings = quick_settings(GetParam());
     settings.late_by_s = late_by_s;
-    expect_no_late_reply_taken(settings);
+    failed += expect_no_late_reply_taken(settings);
   }
+  EXPECT_GT(failed, 0);
 }
 
 // Without the echo that brings a serial line back in step this holds for replies that are not later than two silences.
 TEST_P(Link, ALateReplyOfAControllerWithoutDiagnosticsAnswersNoLaterRequest) {
   ModbusServerSettings settings = quick_settings(GetParam());
   settings.knows_diagnostics = false;
-  settings.late_by_s = 0.07;
+  settings.late_by_s = 0.03;
   expect_no_late_reply_taken(settings);
 }
 
@@ -92,8 +101,8 @@ TEST_P(Link, AControllerThatIsGoneIsDisconnectedInTimeAndMayComeBack) {
   });
   EXPECT_GT(took_s, 0.1);
   EXPECT_LT(took_s, 1.0);
-  const std::string where =
-      GetParam() == Transport::Tcp ? "127.0.0.1:" + std::to_string(bench.settings.endpoint.port) : bench.settings.endpoint.serial_device;
+  const std::string where = GetParam() == Transport::Tcp ? "127.0.0.1:" + std::to_string(bench.settings.endpoint.port)
+                                                         : bench.settings.endpoint.serial_device;
   for (const std::string& part : {std::string("controller bench: reading turntable position (input registers 0-1)"),
                                   std::string("gave up after 0.3 s"), where}) {
     EXPECT_TRUE(holds(message, part)) << message;
@@ -114,7 +123,8 @@ TEST_P(Link, WhatIsNotInTheControllerIsSaidAtOnce) {
       took_s = seconds_of([&] { EXPECT_THROW(bench.link->read(nowhere, "point light fault"), Protocol); });
       bench.link->read(nowhere, "point light fault");
     });
-    EXPECT_TRUE(holds(message, "controller bench: reading point light fault (" + to_string(nowhere) + "): Illegal data address"))
+    EXPECT_TRUE(holds(message,
+                      "controller bench: reading point light fault (" + to_string(nowhere) + "): Illegal data address"))
         << message;
     EXPECT_LT(took_s, 0.5);
   }
@@ -144,12 +154,13 @@ TEST_P(Link, ThreadsShareALinkWithoutMixingTheirReplies) {
   bench.bench_clock->sleep_until(bench.bench_clock->now_s() + 10.0, {});
   std::atomic<int> wrong = 0;
   const auto read = [&](BenchAxis axis, double expected) {
-    for (int i = 0; i < 200; ++i) {
+    for (int i = 0; i < 100; ++i) {
       wrong += bench.link->read(bench.settings.axes.at(axis).position, "position") == expected ? 0 : 1;
     }
   };
   {
-    const std::jthread one([&] { read(BenchAxis::Turntable, 53.3); }), other([&] { read(BenchAxis::LightAzimuth, -33.5); });
+    const std::jthread one([&] { read(BenchAxis::Turntable, 53.3); }),
+        other([&] { read(BenchAxis::LightAzimuth, -33.5); });
   }
   EXPECT_EQ(wrong, 0);
 }
@@ -180,18 +191,31 @@ TEST(TcpLink, ConnectingToAnAddressThatDoesNotAnswerHasADeadline) {
   const double took_s = seconds_of(
       [&] { message = message_of([&] { ModbusLink link(endpoint, std::make_shared<SystemClock>()); }); });
   EXPECT_TRUE(holds(message, "controller far away: connecting: cannot connect: no answer within 0.1 s")) << message;
-  EXPECT_LT(took_s, 1.2);
+  EXPECT_LT(took_s, 0.5);  // what the library would wait by itself
 }
 
 TEST(TcpLink, AConnectionThatIsAcceptedAndDroppedOrNeverAnsweredIsTriedAgain) {
   for (const Fault fault : {Fault::Disconnect, Fault::Mute}) {
     const ModbusBench bench(Transport::Tcp);
-    bench.faults->arm_one(fault, 0);  // strikes the second connection's "accept", since nothing is read before
+    bench.faults->arm_one(fault, 0);
     const auto second = bench.new_link();
     EXPECT_EQ(second->read(bench.settings.axes.at(BenchAxis::Turntable).position, "turntable position"), 0.0);
     ASSERT_EQ(bench.faults->injected().size(), 1u);
     EXPECT_EQ(bench.faults->injected()[0].operation, "accept");
   }
+}
+
+TEST(RtuLink, APortWithoutANameIsMadeInTheFolderForTemporaryFilesAndRemoved) {
+  std::filesystem::path port;
+  {
+    const ModbusBench bench(Transport::Rtu);
+    ModbusServerSettings settings = quick_settings(Transport::Rtu);
+    const ModbusControllerServer server(settings, bench.bench, bench.faults);
+    port = server.endpoint().serial_device;
+    ModbusLink link(server.endpoint(), bench.real_clock);
+    EXPECT_EQ(link.read({RegisterTable::Input, 100}, "x"), 0.0);
+  }
+  EXPECT_FALSE(std::filesystem::exists(port.parent_path()));
 }
 
 TEST(TcpLink, AnEndpointThatCannotBeIsRefused) {
