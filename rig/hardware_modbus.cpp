@@ -45,10 +45,11 @@ enum class Holds { Anything, Number };
 ModbusRegister read_register_keys(const TomlTable& table, Access access, Holds holds) {
   using enum RegisterTable;
   ModbusRegister where;
-  where.table = access == Access::Write ? named(table, "table", {{"coil", Coil}, {"holding", Holding}}, where.table)
-                                        : named(table, "table",
-                                                {{"coil", Coil}, {"discrete", DiscreteInput}, {"holding", Holding}, {"input", Input}},
-                                                where.table);
+  where.table =
+      access == Access::Write
+          ? named(table, "table", {{"coil", Coil}, {"holding", Holding}}, where.table)
+          : named(table, "table", {{"coil", Coil}, {"discrete", DiscreteInput}, {"holding", Holding}, {"input", Input}},
+                  where.table);
   if (is_bit(where.table)) {
     if (holds == Holds::Number) table.reject("table", "a single bit", "\"holding\" or \"input\": this is a number");
     where.type = named(table, "type", {{"bit", RegisterType::Bit}}, RegisterType::Bit);
@@ -106,7 +107,8 @@ void read_tcp(const TomlTable& table, ModbusEndpoint& endpoint) {
   endpoint.host = table.string("host");
   in_addr address{};
   if (inet_pton(AF_INET, endpoint.host.c_str(), &address) != 1) {
-    table.reject("host", "\"" + endpoint.host + '"', "an IPv4 address such as 192.168.1.20 (looking up a name has no deadline)");
+    table.reject("host", "\"" + endpoint.host + '"',
+                 "an IPv4 address such as 192.168.1.20 (looking up a name has no deadline)");
   }
   endpoint.port = integer_or(table, "port", 1, 65535, endpoint.port);
   endpoint.unit_id = integer_or(table, "unit_id", 0, 255, endpoint.unit_id);
@@ -140,8 +142,9 @@ ModbusEndpoint read_modbus_endpoint(const TomlTable& table, const std::string& n
   if (transport == "tcp") read_tcp(table, endpoint);
   else if (transport == "rtu") read_rtu(table, endpoint);
   else table.reject("transport", "\"" + transport + '"', "\"tcp\" or \"rtu\"");
-  endpoint.word_order = named(table, "word_order", {{"high_first", WordOrder::HighFirst}, {"low_first", WordOrder::LowFirst}},
-                              endpoint.word_order);
+  endpoint.word_order =
+      named(table, "word_order", {{"high_first", WordOrder::HighFirst}, {"low_first", WordOrder::LowFirst}},
+            endpoint.word_order);
   endpoint.response_timeout_s =
       number_or(table, "response_timeout_s", NumberRange::between(0.001, 10.0), endpoint.response_timeout_s);
   endpoint.give_up_s = number_or(table, "give_up_s", NumberRange::between(0.0, 600.0), endpoint.give_up_s);

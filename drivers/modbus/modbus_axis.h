@@ -25,7 +25,8 @@ class ModbusAxis final : public Axis {
   // device reports or where there is no command to home it, Disconnected, Cancelled; the axis has then been halted.
   void home(std::stop_token stop);
 
-  // Writes the stop command; without one, sends the axis to where it is now. 50 ms a try, see ModbusLink::write_urgently.
+  // Writes the stop command; without one, sends the axis to where it is now. 50 ms a try, see
+  // ModbusLink::write_urgently.
   void halt() noexcept override;
 
  protected:

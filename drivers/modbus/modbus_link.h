@@ -4,7 +4,7 @@
 //   ┌───────────┐ ─────────────────────────────▶ ┌─────────┐ ─────────────────────────────▶ ┌──────────────┐
 //   │ Connected │ ◀───────────────────────────── │ Suspect │                                │ Reconnecting │ ◀─┐
 //   └───────────┘   serial: silent and in step   └─────────┘ ─────────────────────────────▶ └──────────────┘   │ back off,
-//      ▲     │                                                 serial: it babbles, is gone      │   │   └───────┘ again
+//      ▲     │                                                 serial: it is gone               │   │   └───────┘
 //      │     └────────────────── the connection breaks ─────────────────────────────────────▶   │   │
 //      └──────────────────────── connected, in step ────────────────────────────────────────────┘   ▼ give_up_s
 //                                                                    the next request tries again ◀ Lost: Disconnected
@@ -43,8 +43,8 @@ class ModbusLink {
 
   // `what` names the value in errors: "turntable position". A value is one request, of one word or two. Both throw
   //   Disconnected  nothing that fits has come back for give_up_s, reconnecting all the while
-  //   Protocol      an exception by Modbus: at once if the register does not exist or does not take the value, else (busy,
-  //                 acknowledge, failure) only if it still comes after give_up_s; a float that is no number
+  //   Protocol      an exception by Modbus: at once if the register does not exist or does not take the value, else
+  //                 (busy, acknowledge, failure) only if it still comes after give_up_s; a float that is no number
   //   Timeout       other threads' requests have kept the line busy for give_up_s
   //   Cancelled     between two tries
   // and none takes longer than give_up_s + 8 * response_timeout_s, waiting for other threads not counted.
@@ -53,10 +53,9 @@ class ModbusLink {
   void write(const ModbusRegister& where, double value, const std::string& what, std::stop_token stop = {});
 
   // For stopping things: goes before all other requests, and gives every write two chances, the second after a
-  // reconnection, each ending after timeout_s; a port that is gone is looked for
-  // a few times more. True if all were acknowledged at one of
-  // them. A write that fails does not keep the
-  // others from being sent. Takes at most (writes + again + 32) * timeout_s, 24 of them on serial lines only, and another thread's request that is under way
+  // reconnection, each ending after timeout_s; a port that is gone is looked for a few times more. True if all were
+  // acknowledged at one of them. A write that fails does not keep the others from being sent. Takes at most
+  // (writes + again + 32) * timeout_s, 24 of them on serial lines only, and another thread's request that is under way
   // (response_timeout_s, or 6 of them while it falls in step on a serial line).
   // again: what is written at the second chance, if it shall be split otherwise; empty: the same.
   bool write_urgently(const std::vector<ModbusWrite>& writes, double timeout_s,

@@ -1,5 +1,5 @@
-// One connection to a Modbus controller, TCP or serial: single requests, each with a deadline, each tried once. What to do
-// about a request that failed is ModbusLink's affair. Not thread-safe.
+// One connection to a Modbus controller, TCP or serial: single requests, each with a deadline, each tried once. What to
+// do about a request that failed is ModbusLink's affair. Not thread-safe.
 #pragma once
 
 #include <cstdint>

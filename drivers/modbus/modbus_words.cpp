@@ -111,7 +111,8 @@ double value_from_words(const ModbusRegister& where, std::span<const std::uint16
 
 ModbusWrite write_of(const ModbusCommand& command, WordOrder order, const std::string& what) {
   if (!is_writable(command.where.table)) {
-    throw OutOfRange(what + " (" + to_string(command.where) + "): such a register cannot be written; use a coil or a holding one");
+    throw OutOfRange(what + " (" + to_string(command.where) +
+                     "): such a register cannot be written; use a coil or a holding one");
   }
   return {command.where.table, command.where.address, words_from_value(command.where, command.value, order, what)};
 }

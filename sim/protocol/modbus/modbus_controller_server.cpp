@@ -213,8 +213,9 @@ class ModbusControllerServer::Serving {
       case Fault::Mute: return;
       case Fault::Disconnect: drop(connection); return;
       case Fault::LateReply:
-        connection.late = LateBytes{std::move(reply), std::chrono::steady_clock::now() +
-                                                          std::chrono::microseconds(std::llround(settings_.late_by_s * 1e6))};
+        connection.late =
+            LateBytes{std::move(reply), std::chrono::steady_clock::now() +
+                                            std::chrono::microseconds(std::llround(settings_.late_by_s * 1e6))};
         return;
       case Fault::HalfReply: reply.resize(reply.size() / 2); break;
       case Fault::Garbage: reply = garbage(); break;

@@ -1,4 +1,5 @@
-// A Modbus controller over the simulated bench, for any client: by TCP, several at once, or by RTU on a pseudo-terminal.
+// A Modbus controller over the simulated bench, for any client: by TCP, several at once, or by RTU on a
+// pseudo-terminal.
 #pragma once
 
 #include <filesystem>

@@ -20,8 +20,8 @@ struct ModbusFrame {
   Bytes pdu;
 };
 
-// The first whole request in `received`, which it is taken from. Over RTU, bytes whose check sum is wrong go unanswered:
-// all of `received` is dropped. A TCP header that cannot be right drops everything, too.
+// The first whole request in `received`, which it is taken from. Over RTU, bytes whose check sum is wrong go
+// unanswered: all of `received` is dropped. A TCP header that cannot be right drops everything, too.
 std::optional<ModbusFrame> take_frame(Framing framing, Bytes& received);
 Bytes framed(Framing framing, const ModbusFrame& request, const Bytes& reply_pdu);
 

@@ -16,7 +16,8 @@ namespace {
 
 std::filesystem::path new_folder() {
   std::string pattern = (std::filesystem::temp_directory_path() / "lumitexel-serial-XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr) throw Error(pattern + ": no temporary folder could be made: " + std::strerror(errno));
+  if (mkdtemp(pattern.data()) == nullptr)
+    throw Error(pattern + ": no temporary folder could be made: " + std::strerror(errno));
   return pattern;
 }
 

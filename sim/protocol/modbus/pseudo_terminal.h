@@ -1,4 +1,5 @@
-// A serial port without hardware: a pseudo-terminal under a name of our choice, as udev gives a USB adapter a lasting one.
+// A serial port without hardware: a pseudo-terminal under a name of our choice, as udev gives a USB adapter a lasting
+// one.
 #pragma once
 
 #include <filesystem>

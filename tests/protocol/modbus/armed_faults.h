@@ -26,7 +26,8 @@ class ArmedFaults final : public FaultSource {
   }
   Fault choose(const std::string&, const std::string&, std::uint64_t, const std::vector<Fault>& possible) override {
     const std::lock_guard lock(arming_);
-    if (fault_ == Fault::None || std::find(possible.begin(), possible.end(), fault_) == possible.end()) return Fault::None;
+    if (fault_ == Fault::None || std::find(possible.begin(), possible.end(), fault_) == possible.end())
+      return Fault::None;
     if (skip_-- > 0) return Fault::None;
     const Fault fault = fault_;
     if (!all_) fault_ = Fault::None;

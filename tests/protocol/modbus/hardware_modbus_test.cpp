@@ -46,8 +46,12 @@ ModbusEndpoint endpoint(const std::string& toml) {
   return read_modbus_endpoint(TomlTable::parse(toml, "rig.toml"), "bench");
 }
 const std::map<std::string, ModbusEndpoint> kControllers{{"arm", {}}, {"bench", {}}};
-ModbusAxisMap axis(const std::string& toml) { return read_modbus_axis(TomlTable::parse(toml, "rig.toml"), kControllers); }
-ModbusLampMap lamp(const std::string& toml) { return read_modbus_lamp(TomlTable::parse(toml, "rig.toml"), kControllers); }
+ModbusAxisMap axis(const std::string& toml) {
+  return read_modbus_axis(TomlTable::parse(toml, "rig.toml"), kControllers);
+}
+ModbusLampMap lamp(const std::string& toml) {
+  return read_modbus_lamp(TomlTable::parse(toml, "rig.toml"), kControllers);
+}
 
 TEST(HardwareModbus, ReadsATcpController) {
   const ModbusEndpoint read = endpoint(kTcp);
@@ -115,7 +119,8 @@ TEST(HardwareModbus, EveryMistakeInAControllerIsOneLineWithItsPlace) {
   EXPECT_BAD_INPUT(bad_tcp("0.2", "nan"), "response_timeout_s", "nan");
   EXPECT_BAD_INPUT(bad_tcp("give_up_s = 5", "giveup_s = 5"), "rig.toml:6: giveup_s", "unknown key");
   EXPECT_BAD_INPUT(bad_tcp("unit_id = 3", "baud = 9600"), "baud", "unknown key");  // belongs to the other transport
-  EXPECT_BAD_INPUT(bad_tcp("table = \"holding\"", "table = \"input\""), "watchdog.table", "input", "\"coil\", \"holding\"");
+  EXPECT_BAD_INPUT(bad_tcp("table = \"holding\"", "table = \"input\""), "watchdog.table", "input",
+                   "\"coil\", \"holding\"");
   EXPECT_BAD_INPUT(bad_tcp("watchdog = {", "#"), "watchdog_period_s", "without a watchdog");
   const auto bad_rtu = [](const std::string& from, const std::string& to) { endpoint(with_replaced(kRtu, from, to)); };
   EXPECT_BAD_INPUT(bad_rtu("19200", "19201"), "rig.toml:3: baud", "19201", "115200");
@@ -137,7 +142,8 @@ TEST(HardwareModbus, EveryMistakeInAMapIsOneLineWithItsPlace) {
   EXPECT_BAD_INPUT(bad_axis("\"holding\", address = 8", "\"input\", address = 8"), "rig.toml:3: target.table", "input");
   EXPECT_BAD_INPUT(bad_axis("address = 12", "address = 12, value = 2"), "start.value", "0 or 1");
   EXPECT_BAD_INPUT(bad_axis("address = 2 }", "address = 2, type = \"uint16\" }"), "moving.type", "\"bit\"");
-  EXPECT_BAD_INPUT(bad_axis("address = 2 }", "address = 2, counts_per_unit = 2 }"), "moving.counts_per_unit", "unknown");
+  EXPECT_BAD_INPUT(bad_axis("address = 2 }", "address = 2, counts_per_unit = 2 }"), "moving.counts_per_unit",
+                   "unknown");
   EXPECT_BAD_INPUT(bad_axis("address = 100 }", "address = 100, value = 1 }"), "fault.value", "unknown key");
   EXPECT_BAD_INPUT(bad_axis("moving", "movng"), "rig.toml:6: movng", "unknown key");
   EXPECT_BAD_INPUT(bad_axis("tolerance_deg = 0.02", "tolerance_deg = 0"), "tolerance_deg", "positive");

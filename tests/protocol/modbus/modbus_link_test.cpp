@@ -20,8 +20,8 @@ INSTANTIATE_TEST_SUITE_P(Over, Link, testing::Values(Transport::Tcp, Transport::
 
 bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-// Two registers of the same kind and size, whose replies look the same: the worst case for a late one. Returns how often
-// replies were late for so long that the reading failed; on a busy machine the client may be late, too.
+// Two registers of the same kind and size, whose replies look the same: the worst case for a late one. Returns how
+// often replies were late for so long that the reading failed; on a busy machine the client may be late, too.
 int expect_no_late_reply_taken(const ModbusServerSettings& settings) {
   ModbusServerSettings given = settings;
   given.endpoint.give_up_s = 0.1;
@@ -101,8 +101,8 @@ TEST_P(Link, AControllerThatIsGoneIsDisconnectedInTimeAndMayComeBack) {
   });
   EXPECT_GT(took_s, 0.1);
   EXPECT_LT(took_s, 1.0);
-  const std::string where =
-      GetParam() == Transport::Tcp ? "127.0.0.1:" + std::to_string(bench.settings.endpoint.port) : bench.settings.endpoint.serial_device;
+  const std::string where = GetParam() == Transport::Tcp ? "127.0.0.1:" + std::to_string(bench.settings.endpoint.port)
+                                                         : bench.settings.endpoint.serial_device;
   for (const std::string& part : {std::string("controller bench: reading turntable position (input registers 0-1)"),
                                   std::string("gave up after 0.3 s"), where}) {
     EXPECT_TRUE(holds(message, part)) << message;
@@ -123,7 +123,8 @@ TEST_P(Link, WhatIsNotInTheControllerIsSaidAtOnce) {
       took_s = seconds_of([&] { EXPECT_THROW(bench.link->read(nowhere, "point light fault"), Protocol); });
       bench.link->read(nowhere, "point light fault");
     });
-    EXPECT_TRUE(holds(message, "controller bench: reading point light fault (" + to_string(nowhere) + "): Illegal data address"))
+    EXPECT_TRUE(holds(message,
+                      "controller bench: reading point light fault (" + to_string(nowhere) + "): Illegal data address"))
         << message;
     EXPECT_LT(took_s, 0.5);
   }
@@ -158,7 +159,8 @@ TEST_P(Link, ThreadsShareALinkWithoutMixingTheirReplies) {
     }
   };
   {
-    const std::jthread one([&] { read(BenchAxis::Turntable, 53.3); }), other([&] { read(BenchAxis::LightAzimuth, -33.5); });
+    const std::jthread one([&] { read(BenchAxis::Turntable, 53.3); }),
+        other([&] { read(BenchAxis::LightAzimuth, -33.5); });
   }
   EXPECT_EQ(wrong, 0);
 }

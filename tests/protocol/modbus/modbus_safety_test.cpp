@@ -24,8 +24,10 @@ void set_going(const ModbusBench& bench, bool forward = true) {
 }
 
 bool is_safe(const ModbusBench& bench) {
-  return std::none_of(kBenchLamps.begin(), kBenchLamps.end(), [&](BenchLamp lamp) { return bench.bench->is_lit(lamp); }) &&
-         std::none_of(kBenchAxes.begin(), kBenchAxes.end(), [&](BenchAxis axis) { return bench.bench->motion(axis).moving; });
+  return std::none_of(kBenchLamps.begin(), kBenchLamps.end(),
+                      [&](BenchLamp lamp) { return bench.bench->is_lit(lamp); }) &&
+         std::none_of(kBenchAxes.begin(), kBenchAxes.end(),
+                      [&](BenchAxis axis) { return bench.bench->motion(axis).moving; });
 }
 
 TEST_P(Safety, MakesEverythingSafeInFewRequests) {

@@ -75,7 +75,8 @@ TEST(ModbusWords, WhatARegisterCannotHoldIsRefusedByName) {
   refused(holding(RegisterType::Uint16), -1.0);
   refused(holding(RegisterType::Int32, 1000.0), 2147483.648);
   refused(holding(RegisterType::Uint32), 4294967296.0);
-  EXPECT_THROW(words_from_value({RegisterTable::Coil, 1, RegisterType::Bit}, 2.0, WordOrder::HighFirst, "x"), OutOfRange);
+  EXPECT_THROW(words_from_value({RegisterTable::Coil, 1, RegisterType::Bit}, 2.0, WordOrder::HighFirst, "x"),
+               OutOfRange);
   EXPECT_THROW(write_of({{RegisterTable::Input, 1}, 1.0}, WordOrder::HighFirst, "x"), OutOfRange);
 }
 
@@ -88,7 +89,8 @@ TEST(ModbusWords, AFloatThatIsNoNumberIsNotPassedOn) {
 TEST(ModbusWords, WritesToAdjoiningAddressesAreOneRequest) {
   const auto coil = [](int address, std::uint16_t word) { return ModbusWrite{RegisterTable::Coil, address, {word}}; };
   const ModbusWrite start{RegisterTable::Holding, 10, {1}}, stop{RegisterTable::Holding, 10, {2}};
-  const std::vector<ModbusWrite> result = joined({coil(7, 0), stop, coil(5, 0), coil(6, 1), start, coil(9, 1), coil(6, 1)});
+  const std::vector<ModbusWrite> result =
+      joined({coil(7, 0), stop, coil(5, 0), coil(6, 1), start, coil(9, 1), coil(6, 1)});
   const std::vector<ModbusWrite> expected{{RegisterTable::Coil, 5, {0, 1, 0}}, coil(9, 1), stop, start};
   EXPECT_EQ(result, expected);
 }
