@@ -111,14 +111,15 @@ void AravisCamera::recover(std::stop_token stop) {
   const double deadline_s = clock_->now_s() + connection_.reconnect_timeout_s;
   if (link_) {
     try {
+      link_->device.require_present();
       link_->device.take_control();
       link_->device.require_same();  // the description in hand is the old one's
       return restart();
     } catch (const Timeout&) {
-      link_->failed = true;  // nobody there; below
     } catch (const Disconnected&) {
     } catch (const Protocol&) {
     }
+    link_->failed = true;  // nobody there, or nobody who listens to us
     link_.reset();
   }
   while (true) {

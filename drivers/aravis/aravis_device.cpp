@@ -42,7 +42,7 @@ GHandle<ArvCamera> open_by_id(const std::string& id, const std::string& name) {
 }  // namespace
 
 AravisDevice::AravisDevice(const std::string& address, std::string name)
-    : name_(std::move(name)), camera_(is_ip_address(address) ? open_gige(address, name_) : open_by_id(address, name_)) {
+    : address_(address), name_(std::move(name)), camera_(is_ip_address(address) ? open_gige(address, name_) : open_by_id(address, name_)) {
   if (!camera_) throw Disconnected(name_ + ": connecting: no such camera");
   identity_ = read_identity();
   // By default the library accepts any number for any feature.
@@ -69,6 +69,10 @@ std::string AravisDevice::read_identity() const {
     if (has(feature)) identity += (identity.empty() ? "" : " ") + text(feature);
   }
   return identity;
+}
+
+void AravisDevice::require_present() const {
+  if (is_gige()) own_address_facing(address_, name_);
 }
 
 void AravisDevice::require_same() const {

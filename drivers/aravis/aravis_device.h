@@ -30,6 +30,8 @@ class AravisDevice {
   bool control_lost() const { return control_lost_; }
   void take_control();  // again; throws Timeout, Disconnected
 
+  // Throws Disconnected within about a second if a GigE Vision camera does not answer at all.
+  void require_present() const;
   // Throws Disconnected if another camera than the one that was opened answers by now.
   void require_same() const;
   // Throws Protocol.
@@ -64,7 +66,7 @@ class AravisDevice {
   std::string read_identity() const;
   static void on_control_lost(ArvDevice* device, std::atomic<bool>* lost);
 
-  std::string name_;
+  std::string address_, name_;
   GHandle<ArvCamera> camera_;
   std::atomic<bool> control_lost_ = false;
   unsigned long signal_ = 0;

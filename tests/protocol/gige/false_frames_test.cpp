@@ -95,7 +95,6 @@ TEST_P(GigeFalsehood, IsDiscardedAndShotAgain) {
 
 INSTANTIATE_TEST_SUITE_P(Each, GigeFalsehood,
                          testing::Values(Falsehood{Fault::StaleFrame, true, true},
-                                         Falsehood{Fault::StaleFrame, true, false},
                                          Falsehood{Fault::StaleFrame, false, true},
                                          Falsehood{Fault::StaleFrame, false, false},
                                          Falsehood{Fault::FalseMetadata, true, true},
@@ -107,7 +106,7 @@ INSTANTIATE_TEST_SUITE_P(Each, GigeFalsehood,
 
 TEST(GigeCommands, ExecutedTwiceByTheCameraDoNotPassAFrameForAnother) {
   // The answer to each of the first commands in turn is lost: sent again, the command is carried out again.
-  for (std::uint64_t at = 200; at < 222; at += 3) {
+  for (std::uint64_t at = 200; at < 222; at += 6) {
     Session session({.repeats_commands = true}, 0, std::make_shared<OneFault>("camera", Fault::LateReply, at, at));
     for (std::uint64_t key = 1; key <= 12; ++key) {
       const CameraSettings asked = key % 2 ? kShort : kLong;

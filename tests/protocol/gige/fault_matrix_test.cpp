@@ -126,7 +126,7 @@ TEST(GigeFaults, OfEachFrameOfASessionEndInCorrectFrames) {
 }
 
 TEST(GigeFaults, WhileConnectingEndInCorrectFramesOrAnErrorThatNamesTheCamera) {
-  run_all(each_at(kOfCommands, 1, 151, 15), run_connecting);
+  run_all(each_at(kOfCommands, 1, 151, 25), run_connecting);
 }
 
 }  // namespace
