@@ -1,5 +1,5 @@
-// The bench behind the recorded devices: where the axes were sent, what is lit, and which part of the recording has been
-// played. It moves at once, since the time that everything took is in the recording.
+// The bench behind the recorded devices: where the axes were sent, what is lit, and which part of the recording has
+// been played. It moves at once, since the time that everything took is in the recording.
 #pragma once
 
 #include <array>

@@ -8,10 +8,10 @@
 
 namespace lumitexel {
 
-// Devices that deliver what this part of the recording holds, on its time: samples, settings, device times, temperatures
-// and axis readings as recorded, discarded frames and failed attempts before the frame that came in the end. What the
-// recording does not hold is refused with OutOfRange (rig/recorded_bench.h). They keep the recording open.
-// Throws BadInput for an imported session, Corrupt for one whose rig cannot be read.
+// Devices that deliver what this part of the recording holds, on its time: samples, settings, device times,
+// temperatures and axis readings as recorded, discarded frames and failed attempts before the frame that came in the
+// end. What the recording does not hold is refused with OutOfRange (rig/recorded_bench.h). They keep the recording
+// open. Throws BadInput for an imported session, Corrupt for one whose rig cannot be read.
 RigDevices make_recorded_devices(std::shared_ptr<const SessionStore> recording, RecordedRun run);
 
 }  // namespace lumitexel

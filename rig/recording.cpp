@@ -132,7 +132,9 @@ Frame load_recorded_frame(const SessionStore& recording, const FrameRecord& reco
   } catch (const BadInput& error) {
     throw Corrupt(error.what());
   }
-  if (sha256_hex(bytes) != record.sha256) throw Corrupt(path.string() + ": its bytes do not match the hash in the journal");
+  if (sha256_hex(bytes) != record.sha256) {
+    throw Corrupt(path.string() + ": its bytes do not match the hash in the journal");
+  }
   Frame frame = decode_frame_file(bytes, path.string());
   frame.reported = record.reported;
   frame.device_time_s = record.device_time_s;

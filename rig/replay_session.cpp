@@ -24,7 +24,8 @@ std::string place_of(const SessionStore& session, const std::string& document) {
 
 bool keeps(const ViewSelection& selection, const Shot& shot) {
   if (selection.kinds_left_out.contains(shot.kind)) return false;
-  return shot.view.empty() || std::find(selection.kept.begin(), selection.kept.end(), shot.view) != selection.kept.end();
+  const std::vector<std::string>& kept = selection.kept;
+  return shot.view.empty() || std::find(kept.begin(), kept.end(), shot.view) != kept.end();
 }
 
 SessionContent content_for(const SessionStore& recording, const ViewSelection& selection) {
@@ -94,7 +95,8 @@ SessionStore begin_replay(const SessionStore& recording, const ViewSelection& se
   }
   const SessionContent content = content_for(recording, selection);
   SessionStore replay = begin_session(directory, content);
-  std::string text = "replay of " + content.replayed_from->session + ", content " + content.replayed_from->content_sha256;
+  const ReplaySource& source = *content.replayed_from;
+  std::string text = "replay of " + source.session + ", content " + source.content_sha256;
   const std::vector<std::string> left_out = left_out_of(recording, replay);
   for (std::size_t i = 0; i < left_out.size(); ++i) text += (i == 0 ? ", without " : ", ") + left_out[i];
   replay.log_event("info", text, SystemClock().utc_ns());

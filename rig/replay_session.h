@@ -14,13 +14,13 @@ namespace lumitexel {
 // The views of a captured session's plan, in its order.
 std::vector<SelectableView> planned_views(const SessionStore& recording);
 
-// A session like the recording, without frames yet: its documents and truth/, its plan and shots less what was left out.
-// Shots keep their ids. Throws BadInput for an imported session or a directory in use, Error or StorageFull.
+// A session like the recording, without frames yet: its documents and truth/, its plan and shots less what was left
+// out. Shots keep their ids. Throws BadInput for an imported session or a directory in use, Error or StorageFull.
 SessionStore begin_replay(const SessionStore& recording, const ViewSelection& selection,
                           const std::filesystem::path& directory);
 
-// The recording that a session made by begin_replay plays; empty for other sessions. Throws BadInput, naming both, if it
-// has been moved or its content has changed since.
+// The recording that a session made by begin_replay plays; empty for other sessions. Throws BadInput, naming both, if
+// it has been moved or its content has changed since.
 std::shared_ptr<const SessionStore> recording_of(const SessionStore& replay);
 
 // What the recording has and the replay left out: views by name, kinds of shots as "kind=dark".

@@ -28,8 +28,9 @@ struct SequenceSummary {
 };
 
 // Each frame is committed before the next shot begins, so that a stop at any moment loses at most the shot in progress.
-// Begin, end and faults are logged as events of the session, every frame that the camera discarded as a discard. Throws what the devices and the store throw, Protocol for
-// a frame that is not of the camera's size or an axis that stands elsewhere, Cancelled once stop is requested.
+// Begin, end and faults are logged as events of the session, frames that the camera discarded as discards. Throws what
+// the devices and the store throw, Protocol for a frame that is not of the camera's size or an axis that stands
+// elsewhere, Cancelled once stop is requested.
 SequenceSummary take_missing_shots(SessionStore& session, RigDevices& devices, Progress& progress,
                                    std::stop_token stop);
 

@@ -116,7 +116,8 @@ ViewSelection select_views(const std::vector<SelectableView>& views, const Selec
     any_fit = any_fit || (kept && !views[i].heldout);
   }
   if (!any_fit) {
-    throw BadInput("--without and --only", "no view to fit is left", "at least one that is not held out of " + listed(views));
+    throw BadInput("--without and --only", "no view to fit is left",
+                   "at least one that is not held out of " + listed(views));
   }
   return selection;
 }

@@ -112,7 +112,9 @@ void copy_frame(const SessionStore& session, const FrameRecord& frame, SessionSt
   } catch (const BadInput& error) {
     throw Corrupt(error.what());
   }
-  if (sha256_hex(bytes) != frame.sha256) throw Corrupt(path.string() + ": its bytes do not match the hash in the journal");
+  if (sha256_hex(bytes) != frame.sha256) {
+    throw Corrupt(path.string() + ": its bytes do not match the hash in the journal");
+  }
   copy.commit_frame(frame, bytes);
 }
 

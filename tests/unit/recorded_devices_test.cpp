@@ -107,7 +107,8 @@ TEST_F(RecordedDevices, TakeNoTime) {
 
 TEST_F(RecordedDevices, AreNotOfAnImportedSession) {
   { SessionStore::create(recorded_ / "imported", SessionKind::Imported); }
-  const auto imported = std::make_shared<const SessionStore>(SessionStore::open(recorded_ / "imported", OpenMode::ReadOnly));
+  const auto imported =
+      std::make_shared<const SessionStore>(SessionStore::open(recorded_ / "imported", OpenMode::ReadOnly));
   EXPECT_BAD_INPUT(make_recorded_devices(imported, {}), "imported", "capture");
 }
 

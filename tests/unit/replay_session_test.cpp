@@ -226,7 +226,8 @@ TEST_F(ReplaySession, KilledAmidAShotItDoesNotRepeatWhatItHasDiscarded) {
                      },
                      {}});
   replay(select());
-  SqliteDatabase(recorded_ / "replay" / "session.db", DatabaseMode::ReadWrite).run("DELETE FROM frames WHERE shot_id = 27");
+  SqliteDatabase(recorded_ / "replay" / "session.db", DatabaseMode::ReadWrite)
+      .run("DELETE FROM frames WHERE shot_id = 27");
   {
     SessionStore session = SessionStore::open(recorded_ / "replay", OpenMode::ReadWrite);
     NoProgress progress;

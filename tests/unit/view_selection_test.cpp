@@ -41,7 +41,8 @@ TEST(ViewSelection, TakesKindsToLeaveOut) {
 }
 
 TEST(ViewSelection, SaysWhatThereIsWhenAskedForSomethingElse) {
-  for (const char* bad : {"view=5", "view=fit_c", "views=3..5", "views=2..1", "views=0..", "view=", "view=-1", "view=0,"}) {
+  for (const char* bad :
+       {"view=5", "view=fit_c", "views=3..5", "views=2..1", "views=0..", "view=", "view=-1", "view=0,"}) {
     EXPECT_BAD_INPUT(kept({bad}), "--without", "0 fit_a, 1 held (held out), 2 fit_b");
     EXPECT_BAD_INPUT(kept({}, {bad}), "--only", "0 fit_a, 1 held (held out), 2 fit_b");
   }
@@ -57,7 +58,8 @@ TEST(ViewSelection, LeavesAViewToFit) {
 }
 
 TEST(ReducedPlan, IsThePlanWithFewerViews) {
-  const std::string text = with_replaced(small_plan_toml(), "turntable_deg = 10.0", "turntable_deg = 10.100000000000003");
+  const std::string text =
+      with_replaced(small_plan_toml(), "turntable_deg = 10.0", "turntable_deg = 10.100000000000003");
   const CapturePlan plan = parse_plan(plan_with_views(text, {"fit_000", "heldout_000"}, "plan.toml"), "plan.toml");
   CapturePlan expected = parse_plan(text, "plan.toml");
   expected.views.erase(expected.views.begin() + 1);
