@@ -68,6 +68,11 @@ double nearest_choice(double value, const std::vector<double>& choices) {
   });
 }
 
+bool worth_another_attempt(const Error& error) {
+  return dynamic_cast<const Timeout*>(&error) || dynamic_cast<const Disconnected*>(&error) ||
+         dynamic_cast<const Protocol*>(&error);
+}
+
 }  // namespace
 
 CameraSettings quantise(const CameraSettings& wanted, const CameraLimits& limits, const std::string& camera_name) {
@@ -92,6 +97,12 @@ bool same_settings(const CameraSettings& a, const CameraSettings& b) {
 }
 
 CameraSettings Camera::quantised(const CameraSettings& wanted) const { return quantise(wanted, limits(), name()); }
+
+double Camera::longest_shot_s(const CameraSettings& settings, int max_attempts) const {
+  const CameraLimits limit = limits();
+  const double attempt_s = (1 + limit.settings_latency_frames) * (settings.exposure_s + limit.readout_s);
+  return max_attempts * (attempt_s + longest_recovery_s());
+}
 
 void Camera::recover(std::stop_token) {}
 
@@ -137,38 +148,37 @@ Frame Camera::attempt(const CameraSettings& settings, std::uint64_t frame_key, s
 
 Frame Camera::shoot(const CameraSettings& wanted, std::stop_token stop, std::uint64_t frame_key, int max_attempts) {
   const CameraSettings settings = quantised(wanted);
-  bool failed = false;  // the attempt before: by a fault, not by its frame
-  for (int left = std::max(1, max_attempts);;) {
-    --left;
-    bool told = false;  // of this attempt
+  for (int left = std::max(1, max_attempts) - 1;; --left) {
+    std::string cause;
     try {
-      if (failed) recover(stop);
-      failed = false;
+      // A frame that a failed or cancelled attempt has triggered may still be on its way: it must not meet the next one.
+      if (needs_recovery_) recover(stop);
+      needs_recovery_ = true;
       Frame frame = attempt(settings, frame_key, stop);
-      const std::string cause = objection(frame, settings, frame_key);
-      if (cause.empty()) {
-        last_settings_ = settings;
-        last_frame_id_ = frame.device_frame_id;
-        last_device_time_s_ = frame.device_time_s;
-        frame.frame_key = frame_key;
-        return frame;
-      }
+      needs_recovery_ = false;
+      cause = objection(frame, settings, frame_key);
+      if (cause.empty()) return accepted(std::move(frame), settings, frame_key);
       discard(frame_key, settings, frame.reported, cause);
-      told = true;
-      if (left <= 0) throw Protocol(name() + ": " + cause + "; " + std::to_string(max_attempts) + " attempts");
     } catch (const Error& error) {
-      const bool worth_another = dynamic_cast<const Timeout*>(&error) || dynamic_cast<const Disconnected*>(&error) ||
-                                 dynamic_cast<const Protocol*>(&error);
       // A reconnected camera may keep time anew. Its count may start again, too: if that makes a good frame look like
       // the last one, it is shot once more, and no harm is done.
       last_settings_.reset();
       last_device_time_s_ = -std::numeric_limits<double>::infinity();
-      if (!worth_another) throw;
-      if (!told) discard(frame_key, settings, {}, error.what());
+      if (!worth_another_attempt(error)) throw;
+      discard(frame_key, settings, {}, error.what());
       if (left <= 0) throw;
-      failed = true;
+      continue;
     }
+    if (left <= 0) throw Protocol(name() + ": " + cause + "; " + std::to_string(max_attempts) + " attempts");
   }
+}
+
+Frame Camera::accepted(Frame frame, const CameraSettings& settings, std::uint64_t frame_key) {
+  last_settings_ = settings;
+  last_frame_id_ = frame.device_frame_id;
+  last_device_time_s_ = frame.device_time_s;
+  frame.frame_key = frame_key;
+  return frame;
 }
 
 }  // namespace lumitexel

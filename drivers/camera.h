@@ -93,12 +93,16 @@ class Camera {
   // Takes one frame with exactly quantised(wanted). Accepted is a frame that has the camera's size, depth and mosaic,
   // reports the settings applied, is not one delivered before (a new device_frame_id, a later device_time_s) and, where
   // the camera writes names into its frames, carries this one. Anything else is discarded and shot again; so is an
-  // attempt that failed by Timeout, Disconnected or Protocol, after recover(). After max_attempts throws what the last
+  // attempt that failed by Timeout, Disconnected or Protocol. Before an attempt that follows a failed or cancelled one, of
+  // this call or an earlier, comes recover(). After max_attempts throws what the last
   // one failed by (Protocol for a frame not accepted).
   // frame_key: the caller's name for the frame, such as the id of its shot. It is kept in the frame; a simulated
   // camera draws its noise by it, so that a shot taken after a restart is the shot that would have been taken before.
   // Throws also OutOfRange, StorageFull (a full card), Cancelled.
   Frame shoot(const CameraSettings& wanted, std::stop_token stop, std::uint64_t frame_key = 0, int max_attempts = 3);
+
+  // The longest that one shoot() with these settings may take, whatever goes wrong.
+  double longest_shot_s(const CameraSettings& settings, int max_attempts = 3) const;
 
   // Told of every discarded frame and failed attempt, from the thread that shoots.
   void on_discard(std::function<void(const DiscardedFrame&)> listener) { discard_listener_ = std::move(listener); }
@@ -110,8 +114,11 @@ class Camera {
   virtual Frame trigger(std::uint64_t frame_key, std::stop_token stop) = 0;
   // After a failed attempt: makes the device ready for arm() again, reconnecting if need be. Throws what it fails by.
   virtual void recover(std::stop_token stop);
+  // The longest that recover() may take; for whoever watches over the whole shot.
+  virtual double longest_recovery_s() const { return 0.0; }
 
  private:
+  Frame accepted(Frame frame, const CameraSettings& settings, std::uint64_t frame_key);
   Frame attempt(const CameraSettings& settings, std::uint64_t frame_key, std::stop_token stop);
   std::string objection(const Frame& frame, const CameraSettings& settings, std::uint64_t frame_key) const;
   void discard(std::uint64_t key, const CameraSettings& asked, std::optional<CameraSettings> reported,
@@ -120,6 +127,7 @@ class Camera {
   std::function<void(const DiscardedFrame&)> discard_listener_;
   std::optional<CameraSettings> last_settings_;  // of the last accepted frame; empty after a fault
   std::optional<std::uint64_t> last_frame_id_;
+  bool needs_recovery_ = false;  // something was thrown amid an attempt, of this shoot() or an earlier one
   double last_device_time_s_ = -std::numeric_limits<double>::infinity();
 };
 

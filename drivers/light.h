@@ -35,6 +35,7 @@ class Lamp {
  private:
   std::shared_ptr<Clock> clock_;
   double settle_s_;
+  bool steady_ = false;  // lit by a switch_to() that came to its end
 };
 
 }  // namespace lumitexel

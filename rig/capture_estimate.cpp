@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "rig/motion_time.h"
 #include "rig/raw_frame_file.h"
@@ -43,11 +44,18 @@ double spanning_tree_s(const std::vector<RigPosition>& positions, const RigDescr
 CaptureEstimate estimate_capture(const std::vector<Shot>& shots, const RigDescription& rig) {
   CaptureEstimate estimate;
   RigPosition position;
+  std::optional<CameraSettings> settings;
+  const int late = rig.camera.limits.settings_latency_frames;  // frames dropped after a change
   for (const Shot& shot : shots) {
     estimate.exposure_s += shot.camera.exposure_s;
     estimate.readout_s += rig.camera.limits.readout_s;
     estimate.motion_s += sequential_motion_s(position, position_of(shot), rig);
     estimate.bytes += pgm_bytes(rig.camera.limits);
+    if (settings != shot.camera) {
+      estimate.exposure_s += late * shot.camera.exposure_s;
+      estimate.readout_s += late * rig.camera.limits.readout_s;
+    }
+    settings = shot.camera;
     position = position_of(shot);
   }
   estimate.shortest_motion_s = spanning_tree_s(distinct_positions(shots), rig);

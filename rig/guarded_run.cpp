@@ -9,6 +9,13 @@ namespace lumitexel {
 namespace {
 
 constexpr std::chrono::milliseconds kAcknowledged{2000};
+constexpr const char* kNotSafe = "NOT SAFE:";
+
+std::string unsafe_text(const std::vector<std::string>& silent) {
+  std::string text = kNotSafe;
+  for (const std::string& name : silent) text += " " + name + " has not acknowledged lamps off and axes stopped;";
+  return text + " check the rig by eye and use its own switch";
+}
 
 }  // namespace
 
@@ -34,8 +41,15 @@ void GuardedRun::expect_life_within(double seconds, const std::string& doing) {
 }
 
 void GuardedRun::finish() {
-  force_dark_and_still();
   ended_ = true;
+  if (!devices_.safety) return force_dark_and_still();
+  SafetyLane& lane = *devices_.safety;
+  lane.on_trip({});
+  lane.trip("the run has ended");
+  const std::vector<std::string> silent = lane.wait_until_safe(kAcknowledged);
+  if (!silent.empty()) throw Error(unsafe_text(silent));
+  lane.reset();
+  force_dark_and_still();
 }
 
 std::string GuardedRun::abandon(const std::string& what) {
@@ -50,13 +64,9 @@ std::string GuardedRun::abandon(const std::string& what) {
   const std::vector<std::string> silent = lane.wait_until_safe(kAcknowledged);
   // A controller that does not answer the lane would not answer here either, and take its time over it.
   if (silent.empty()) force_dark_and_still();
-  std::string cause = tripped_by.empty() ? what : "paused safely: " + tripped_by;
-  if (!silent.empty()) {
-    std::string unsafe = "NOT SAFE:";
-    for (const std::string& name : silent) unsafe += " " + name + " has not acknowledged lamps off and axes stopped;";
-    cause = unsafe + " check the rig by eye and use its own switch. Cause: " + cause;
-  }
-  return cause;
+  const std::string cause = tripped_by.empty() ? what : "paused safely: " + tripped_by;
+  if (silent.empty()) return cause;
+  return what.starts_with(kNotSafe) ? what : unsafe_text(silent) + ". Cause: " + cause;
 }
 
 void GuardedRun::rethrow_or_explain(const std::string& cause) const {

@@ -23,7 +23,8 @@ class GuardedRun {
   std::stop_token stop() const { return halt_.get_token(); }
   void expect_life_within(double seconds, const std::string& doing);  // SafetyLane's
 
-  // After the last shot: dark and still by the ordinary way.
+  // After the last shot: dark and still, through the lane as well, which watches again afterwards. Throws Error, naming
+  // them, if controllers have not acknowledged.
   void finish();
 
   // After a fault: dark and still through the lane, then through the devices themselves. Returns what to tell: the lane's

@@ -18,7 +18,7 @@ class ModbusSafetyChannel final : public SafetyChannel {
   ModbusSafetyChannel(std::string name, ModbusSafety safety) : name_(std::move(name)), safety_(std::move(safety)) {}
   std::string name() const override { return name_; }
   bool make_safe() noexcept override { return safety_.make_safe(); }
-  void keep_alive() noexcept override { safety_.kick_watchdog(); }
+  bool keep_alive() noexcept override { return safety_.kick_watchdog(); }
 
  private:
   std::string name_;

@@ -8,6 +8,8 @@
 //   [hardware.camera.fixed_settings]    # made once on connecting
 //   imagequality = "RAW"
 #include <algorithm>
+#include <cctype>
+#include <sstream>
 
 #include "rig/hardware_description.h"
 #include "rig/toml_table.h"
@@ -31,6 +33,14 @@ void check_port(const TomlTable& table, const GphotoConnection& connection) {
   const auto colons = std::count(port.begin(), port.end(), ':');
   if (over_ip && colons != 1 && colons != 3) {
     table.reject("port", port, "\"ptpip:ADDRESS\" or \"ptpip:ADDRESS:COMMAND_PORT:EVENT_PORT\"");
+  }
+  std::istringstream parts(port);
+  std::string part;
+  for (int i = 0; over_ip && std::getline(parts, part, ':'); ++i) {
+    const bool number = !part.empty() && part.size() <= 5 && std::all_of(part.begin(), part.end(), ::isdigit);
+    if (i >= 2 && !(number && std::stoi(part) >= 1 && std::stoi(part) <= 65535)) {
+      table.reject("port", port, "ports from 1 to 65535");
+    }
   }
   if (over_ip && connection.model.empty()) {
     table.reject("model", "missing",

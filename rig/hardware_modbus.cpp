@@ -166,6 +166,7 @@ ModbusAxisMap read_modbus_axis(const TomlTable& table, const std::map<std::strin
   axis.target = read_register(table, "target", Access::Write, Holds::Number);
   axis.start = read_optional_command(table, "start");
   axis.stop = read_optional_command(table, "stop");
+  if (!axis.stop) table.reject("stop", "missing", "the command that stops this axis: the safety lane needs it");
   axis.home = read_optional_command(table, "home");
   axis.moving = read_optional_register(table, "moving");
   axis.homed = read_optional_register(table, "homed");

@@ -34,7 +34,7 @@ std::vector<RecordedRun> runs_left(const SessionStore& recording, const SessionS
 RecordedRun recorded_frames(const SessionStore& recording);
 
 // The frame as the camera delivered it: samples, settings, device time, temperature. Throws Corrupt, naming the file,
-// if its bytes are not the ones that were committed, Error for one that is not of bare samples (camera raw).
+// if its bytes are not the ones that were committed.
 Frame load_recorded_frame(const SessionStore& recording, const FrameRecord& record);
 
 }  // namespace lumitexel

@@ -26,7 +26,7 @@ void lay_over(toml::table& under, const toml::table& over) {
   for (const auto& [key, value] : over) {
     toml::table* inner = under[key].as_table();
     const toml::table* laid = value.as_table();
-    if (laid != nullptr && laid->contains("replaces")) {
+    if (laid != nullptr && (*laid)["replaces"].value_or(false)) {
       toml::table whole = *laid;
       whole.erase("replaces");
       under.insert_or_assign(key, std::move(whole));
@@ -38,6 +38,17 @@ void lay_over(toml::table& under, const toml::table& over) {
   }
 }
 
+// Files that a rig names relative to itself: what lies over it may be in another folder.
+void make_paths_absolute(toml::table& rig, const fs::path& folder) {
+  const auto absolute = [&](const char* table, const char* key) {
+    toml::value<std::string>* path = rig[table][key].as_string();
+    const bool names_a_file = path != nullptr && !(std::string(key) == "object" && path->get() == "vase");
+    if (names_a_file) *path = (fs::absolute(folder) / path->get()).lexically_normal().string();
+  };
+  absolute("simulation", "object");
+  absolute("recorded", "session");
+}
+
 toml::table with_bases(const fs::path& file, std::vector<fs::path> seen) {
   const fs::path whole = fs::weakly_canonical(file);
   if (std::find(seen.begin(), seen.end(), whole) != seen.end()) {
@@ -45,6 +56,7 @@ toml::table with_bases(const fs::path& file, std::vector<fs::path> seen) {
   }
   seen.push_back(whole);
   toml::table over = parsed(read_whole_file(file), file);
+  make_paths_absolute(over, file.parent_path());
   if (!over.contains("base")) return over;
   const toml::value<std::string>* base = over["base"].as_string();
   if (base == nullptr) throw BadInput(file.string() + ": base", "no text", "a rig's file, relative to this one");

@@ -2,6 +2,7 @@
 
 #include <pthread.h>
 
+#include <iostream>
 #include <sstream>
 #include <utility>
 
@@ -23,7 +24,8 @@ void prefer_this_thread() {
 
 struct SafetyLane::Guard {
   std::unique_ptr<SafetyChannel> channel;
-  bool safe = false;  // acknowledged since the trip; under the lane's mutex
+  bool safe = false;     // acknowledged since the trip; under the lane's mutex
+  bool goodbye = false;  // told once more since the lane is leaving
   std::jthread thread;
 };
 
@@ -42,7 +44,15 @@ SafetyLane::SafetyLane(std::vector<std::unique_ptr<SafetyChannel>> channels, std
 SafetyLane::~SafetyLane() {
   on_trip({});
   trip("the program lets go of the rig");
-  wait_until_safe(kLastGoodbye);
+  {
+    const std::lock_guard lock(mutex_);  // also when it had tripped before
+    for (const std::unique_ptr<Guard>& one : guards_) one->safe = one->goodbye = false;
+    leaving_ = true;
+  }
+  changed_.notify_all();
+  for (const std::string& name : wait_until_safe(kLastGoodbye)) {
+    std::cerr << "lumitexel: NOT SAFE: " << name << " has not acknowledged lamps off and axes stopped; check by eye\n";
+  }
 }
 
 void SafetyLane::trip(const std::string& cause) noexcept {
@@ -105,24 +115,32 @@ void SafetyLane::reset() {
 // when the lane tripped may have come after it.
 void SafetyLane::guard(std::stop_token stop, Guard& guarded) {
   prefer_this_thread();
+  SteadyTime last_heard = std::chrono::steady_clock::now();
   std::unique_lock lock(mutex_);
   while (!stop.stop_requested()) {
     if (!tripped_) {
       lock.unlock();
-      guarded.channel->keep_alive();
+      const bool heard = guarded.channel->keep_alive();
+      const SteadyTime now = std::chrono::steady_clock::now();
+      if (heard) last_heard = now;
+      if (now - last_heard > std::chrono::duration<double>(kDeafChannel_s)) {
+        trip(guarded.channel->name() + " no longer answers its safety connection");
+      }
       lock.lock();
       changed_.wait_for(lock, stop, keep_alive_period_, [this] { return tripped_.load(); });
       continue;
     }
     lock.unlock();
     const bool acknowledged = guarded.channel->make_safe();
+    last_heard = std::chrono::steady_clock::now();
     lock.lock();
     if (acknowledged && !guarded.safe) {
       guarded.safe = true;
       changed_.notify_all();
     }
+    if (leaving_) guarded.goodbye = true;
     changed_.wait_for(lock, stop, acknowledged ? kRepeatAcknowledged : kRepeatUnacknowledged,
-                      [this] { return !tripped_.load(); });
+                      [&] { return !tripped_ || (leaving_ && !guarded.goodbye); });
   }
 }
 

@@ -3,7 +3,8 @@
 //
 //          trip(cause), or no sign of life in time
 //   Watching ────────────────────────────────────▶ Tripped: make_safe() until acknowledged, then again every second
-//      │ keep_alive() every period: the controller's own watchdog trips if this program dies or starves
+//      │ keep_alive() every period: the controller's own watchdog trips if this program dies or starves;
+//      │ a controller that has not answered kDeafChannel_s long trips the lane
 //
 // Works in real time, not on the injected Clock: what it guards against is real.
 #pragma once
@@ -27,16 +28,19 @@ class SafetyChannel {
   virtual std::string name() const = 0;
   // Every lamp off, every axis stopped; true once the controller has acknowledged all of it. Takes at most some 100 ms.
   virtual bool make_safe() noexcept = 0;
-  // Feeds the controller's watchdog where it has one, and keeps the connection warm.
-  virtual void keep_alive() noexcept = 0;
+  // Feeds the controller's watchdog where it has one, and keeps the connection warm; true if the controller answered.
+  virtual bool keep_alive() noexcept = 0;
 };
+
+inline constexpr double kDeafChannel_s = 2.0;
 
 class SafetyLane {
  public:
   // keep_alive_period: well below the controllers' watchdog times.
   explicit SafetyLane(std::vector<std::unique_ptr<SafetyChannel>> channels,
                       std::chrono::milliseconds keep_alive_period = std::chrono::milliseconds(200));
-  // Makes everything safe for a last time, waits for that at most a second, ends the threads.
+  // Makes everything safe for a last time, waits for that at most a second, ends the threads. Who does not acknowledge is
+  // named on stderr: there is nobody left to throw to.
   ~SafetyLane();
   SafetyLane(const SafetyLane&) = delete;
   SafetyLane& operator=(const SafetyLane&) = delete;
@@ -68,6 +72,7 @@ class SafetyLane {
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
   std::atomic<bool> tripped_ = false;
+  bool leaving_ = false;
   std::string cause_, doing_;
   std::chrono::steady_clock::time_point life_due_ = std::chrono::steady_clock::time_point::max();
   std::chrono::duration<double> life_time_{};

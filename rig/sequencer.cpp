@@ -89,7 +89,8 @@ class Sequencer {
   void take(const Shot& shot, SessionStore& session) {
     if (stop_.stop_requested()) throw Cancelled("capture cancelled before shot " + std::to_string(shot.id));
     const std::string number = std::to_string(shot.id);
-    guard_.expect_life_within(moves_s_ + 3.0 * shot.camera.exposure_s + kShotGrace_s, "taking shot " + number);
+    guard_.expect_life_within(
+        moves_s_ + devices_.camera->longest_shot_s(shot.camera, kShotAttempts) + kShotGrace_s, "taking shot " + number);
     const Frame frame = expose(shot);
     const NewFrame record = record_of(shot, frame);
     // Last: a lamp that went out or was switched off while the shutter was open spoils the frame.

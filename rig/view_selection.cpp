@@ -66,10 +66,14 @@ class Reader {
   }
 
   std::optional<std::size_t> named(const std::string& item) const {
+    std::optional<std::size_t> found;
     for (std::size_t i = 0; i < views_.size(); ++i) {
-      if (views_[i].name == item || std::filesystem::path(views_[i].name).stem() == item) return i;
+      if (views_[i].name == item) return i;
+      if (std::filesystem::path(views_[i].name).stem() != item) continue;
+      if (found) fail("'" + item + "' could be " + views_[*found].name + " or " + views_[i].name, "a view's whole name");
+      found = i;
     }
-    return std::nullopt;
+    return found;
   }
 
   void add_views(const std::string& item, Indices& indices) const {

@@ -103,8 +103,17 @@ Frame AravisCamera::trigger(std::uint64_t frame_key, std::stop_token stop) {
     if (std::isnan(frame.reported.exposure_s)) frame.reported.exposure_s = registers.exposure_s;
     if (std::isnan(frame.reported.gain_db)) frame.reported.gain_db = registers.gain_db;
   }
-  if (camera.setup.temperature) frame.sensor_temperature_c = camera.device.real(connection_.temperature_feature);
+  if (camera.setup.temperature) {
+    const double temperature_c = camera.device.real(connection_.temperature_feature);
+    if (std::isfinite(temperature_c)) frame.sensor_temperature_c = temperature_c;
+  }
   return frame;
+}
+
+// The commands on either side of a lost frame, each up to 2.5 s, beside what is stated.
+double AravisCamera::longest_recovery_s() const {
+  constexpr double kCommands_s = 20.0;
+  return connection_.reconnect_timeout_s + connection_.answer_timeout_s + kCommands_s;
 }
 
 void AravisCamera::recover(std::stop_token stop) {
@@ -118,6 +127,10 @@ void AravisCamera::recover(std::stop_token stop) {
     } catch (const Timeout&) {
     } catch (const Disconnected&) {
     } catch (const Protocol&) {
+    } catch (...) {  // a camera that cannot be set up as the rig wants is none
+      link_->failed = true;
+      link_.reset();
+      throw;
     }
     link_->failed = true;  // nobody there, or nobody who listens to us
     link_.reset();

@@ -38,6 +38,7 @@ class AravisCamera final : public Camera {
   // Takes control again and sets, verifies and restarts everything; reconnects if that fails, until reconnect_timeout_s
   // is over. The camera's own deadline of a command comes on top.
   void recover(std::stop_token stop) override;
+  double longest_recovery_s() const override;
 
  private:
   struct Link;

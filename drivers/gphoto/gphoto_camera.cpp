@@ -50,6 +50,10 @@ GphotoCamera::GphotoCamera(const GphotoConnection& connection, const CameraLimit
 
 void GphotoCamera::recover(std::stop_token stop) { remote_.connect(stop); }
 
+double GphotoCamera::longest_recovery_s() const {
+  return connection_.reconnect_timeout_s + 3.0 * connection_.answer_timeout_s;  // set, capture, download
+}
+
 double GphotoCamera::iso_of(double gain_db) const { return connection_.iso_at_0_db * std::pow(10.0, gain_db / 20.0); }
 double GphotoCamera::gain_db_of(double iso) const { return 20.0 * std::log10(iso / connection_.iso_at_0_db); }
 
@@ -133,8 +137,10 @@ std::optional<std::uint64_t> GphotoCamera::key_in(const CameraRaw& raw, const st
 
 double GphotoCamera::time_of(const CameraRaw& raw) {
   if (!raw.exif.time_s) return clock_->now_s();
-  const bool same_second = std::floor(last_time_s_) == *raw.exif.time_s;
-  return !raw.exif.has_subseconds && same_second ? last_time_s_ + kWithinASecond_s : *raw.exif.time_s;
+  // Whole seconds, or hundredths that are always 00. An older picture's time is its own: it has to be refused.
+  const bool stands = std::floor(last_time_s_) == std::floor(*raw.exif.time_s) && *raw.exif.time_s <= last_time_s_;
+  const bool whole = *raw.exif.time_s == std::floor(*raw.exif.time_s);
+  return stands && whole ? last_time_s_ + kWithinASecond_s : *raw.exif.time_s;
 }
 
 }  // namespace lumitexel

@@ -50,6 +50,7 @@ class GphotoCamera final : public Camera {
   // sensor_temperature_c stays 0 where the file tells none.
   Frame trigger(std::uint64_t frame_key, std::stop_token stop) override;
   void recover(std::stop_token stop) override;
+  double longest_recovery_s() const override;
 
  private:
   double iso_of(double gain_db) const;

@@ -49,7 +49,7 @@ int checked(int code, const std::string& what) {
   if (code >= GP_OK) return code;
   const std::string text = what + ": libgphoto2 says '" + gp_result_as_string(code) + "' (" + std::to_string(code) +
                            ")" + (last_log.empty() ? "" : ", before it: " + last_log);
-  if (code == GP_ERROR_NO_SPACE || log_mentions("200c") || log_mentions("200C")) throw StorageFull(text);
+  if (code == GP_ERROR_NO_SPACE || log_mentions("0x200c") || log_mentions("0x200C")) throw StorageFull(text);
   switch (code) {
     case GP_ERROR_TIMEOUT:
       throw Timeout(text);

@@ -51,7 +51,8 @@ Frame CapturedFrames::load(const FrameRecord& record) const {
   if (!file || sha256_hex(bytes) != record.sha256)
     throw Corrupt(path + ": missing, or not the bytes that were committed");
   Frame frame = decode_frame_file(bytes, path);
-  frame.reported = record.reported;
+  // What was asked of the camera, which reported the same in its own units: equal bit for bit over all its frames.
+  frame.reported = record.applied;
   return frame;
 }
 
@@ -64,7 +65,7 @@ std::vector<Frame> CapturedFrames::load(const std::vector<FrameRecord>& records)
 DarkLibrary CapturedFrames::master_darks(const LinearSensor& sensor) const {
   std::map<std::pair<double, double>, std::vector<FrameRecord>> by_settings;
   for (const FrameRecord& record : of(ShotKind::Dark)) {
-    by_settings[{record.reported.exposure_s, record.reported.gain_db}].push_back(record);
+    by_settings[{record.applied.exposure_s, record.applied.gain_db}].push_back(record);
   }
   DarkLibrary library;
   for (const auto& [settings, records] : by_settings) library.add(make_master_dark(load(records), sensor));

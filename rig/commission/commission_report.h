@@ -21,7 +21,7 @@ struct SensorFindings {
   Measured read_noise_dn;        // standard deviation of one read, quantisation taken out
   Measured electrons_per_dn;     // from the photon-transfer curve
   Measured read_noise_e;
-  Measured saturation_dn;        // the highest code that a full exposure gave
+  Measured saturation_dn;        // where a full exposure ends; 0, as full_well_e, if none could be had
   Measured full_well_e;
   Measured dark_current_e_per_s;  // median pixel
   double hot_pixel_share = 0;     // pixels whose dark current is over ten times the frame's noise
@@ -32,7 +32,7 @@ struct SensorFindings {
 };
 
 struct TimingFindings {
-  int settings_latency_frames = 0;      // frames after a change of exposure that still had the earlier one
+  std::optional<int> settings_latency_frames;  // frames after a change of exposure that still had the earlier one
   int honest_late_frames = 0;           // of these, frames that said so by themselves
   Measured frame_overhead_s;            // from trigger to frame, less the exposure: median
   double slowest_overhead_s = 0;

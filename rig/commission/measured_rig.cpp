@@ -35,14 +35,16 @@ std::string measured_rig_toml(const CommissionReport& report, const RigDescripti
   std::ostringstream out;
   out.precision(6);
   out << "# Measured by `lumitexel commission`. Numbers after +- are one sigma.\n"
-      << "base = " << quoted(base) << "\nname = " << quoted(rig.name + ", measured") << "\n\n[camera]\n"
-      << "settings_latency_frames = " << report.timing.settings_latency_frames << '\n';
+      << "base = " << quoted(base) << "\nname = " << quoted(rig.name + ", measured") << "\n\n[camera]\n";
+  if (report.timing.settings_latency_frames) {
+    out << "settings_latency_frames = " << *report.timing.settings_latency_frames << '\n';
+  }
   put(out, "readout_s", {std::max(0.0, report.timing.frame_overhead_s.value), report.timing.frame_overhead_s.sigma},
       "trigger to frame, less the exposure");
   const SensorFindings& sensor = report.sensor;
   if (sensor.electrons_per_dn.value > 0.0) {
     put(out, "electrons_per_dn", sensor.electrons_per_dn, "photon transfer");
-    put(out, "full_well_e", sensor.full_well_e, "");
+    if (sensor.full_well_e.value > 0.0) put(out, "full_well_e", sensor.full_well_e, "");
     put(out, "read_noise_e", sensor.read_noise_e, "");
     put(out, "black_level_dn", sensor.black_level_dn, "");
   }

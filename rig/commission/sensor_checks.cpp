@@ -11,6 +11,7 @@ constexpr double kLongDark_s = 2.0;
 constexpr int kLadder = 8;         // exposures, each half the next
 constexpr int kNoiseGroups = 24;
 constexpr int kStabilityFrames = 8;
+constexpr double kNoiseSpread = 8.0;  // of a thousand values of a normal distribution, in its sigmas
 constexpr double kLeast = 0.05, kMost = 0.8;  // share of saturation within which linearity is judged
 
 void check_darks(TestBench& bench, SensorFindings& found) {
@@ -90,7 +91,7 @@ void check_ladder(TestBench& bench, double longest_s, SensorFindings& found) {
   // The longest has the least noise: it sets the slope.
   const double slope = signals.front().y / signals.front().x;
   for (const CurvePoint& point : signals) {
-    if (point.y < kLeast * (bench.top_dn() - black) * 0.3) continue;
+    if (point.y < kLeast * (bench.top_dn() - black)) continue;
     const double deviation = 100.0 * (point.y / (slope * point.x) - 1.0);
     found.linearity.push_back({point.x, deviation});
     found.nonlinearity_percent = std::max(found.nonlinearity_percent, std::abs(deviation));
@@ -104,6 +105,12 @@ void check_saturation(TestBench& bench, double longest_s, SensorFindings& found)
   const double exposure_s = std::min(longest_s * 20.0, bench.devices().camera->limits().exposure_max_s);
   const Frame full = bench.settled_shot(exposure_s);
   found.saturation_dn = {quantile_of(full.samples, 0.999), 0.0};
+  // The brightest hundredth of a saturated picture is one value and its noise; one that is not saturated goes on beyond.
+  const double spread = found.saturation_dn.value - quantile_of(full.samples, 0.99);
+  if (spread > kNoiseSpread * std::hypot(found.read_noise_dn.value, 1.0)) {
+    found.saturation_dn = {};
+    return;
+  }
   const double depth = found.saturation_dn.value - found.black_level_dn.value;
   found.full_well_e = {depth * found.electrons_per_dn.value, depth * found.electrons_per_dn.sigma};
 }

@@ -9,6 +9,7 @@ namespace lumitexel {
 namespace {
 
 constexpr int kMostTries = 12;
+constexpr double kBetweenFrames_s = 120.0;
 constexpr int kAttempts = 10;  // a camera may be several frames late with its settings; that is what is measured
 
 }  // namespace
@@ -19,6 +20,8 @@ TestBench::TestBench(RigDevices& devices, const RigDescription& rig, std::stop_t
     if (frame.reported) ++late_frames_;
   });
 }
+
+TestBench::~TestBench() { devices_.camera->on_discard(nullptr); }
 
 void TestBench::light_only(Lamp* lamp) {
   for (Lamp* other : {devices_.point_light.get(), devices_.ring_flash.get(), devices_.backlight.get()}) {
@@ -34,6 +37,11 @@ CameraSettings TestBench::settings_for(double exposure_s) const {
 
 Frame TestBench::shoot(double exposure_s) {
   const CameraSettings settings = settings_for(exposure_s);
+  // Between two frames lie a few moves and rests at most.
+  const double shot_s = devices_.camera->longest_shot_s(settings, kAttempts);
+  if (devices_.safety) {
+    devices_.safety->expect_life_within(std::chrono::duration<double>(shot_s + kBetweenFrames_s), "a commissioning frame");
+  }
   TimedFrame timed;
   timed.shot_s = devices_.clock->now_s();
   Frame frame = devices_.camera->shoot(settings, stop_, ++key_, kAttempts);

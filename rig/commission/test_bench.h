@@ -21,6 +21,9 @@ struct TimedFrame {
 class TestBench {
  public:
   TestBench(RigDevices& devices, const RigDescription& rig, std::stop_token stop);
+  ~TestBench();
+  TestBench(const TestBench&) = delete;
+  TestBench& operator=(const TestBench&) = delete;
 
   RigDevices& devices() { return devices_; }
   const RigDescription& rig() const { return rig_; }

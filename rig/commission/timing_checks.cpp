@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "drivers/error.h"
+
 namespace lumitexel {
 namespace {
 
@@ -35,23 +37,29 @@ TimingFindings check_latency(TestBench& bench) {
   bench.set_latency(kFramesAfterChange);  // not known yet
   const double bright_s = bench.exposure_for(0.6);
   const double dim_s = std::max(bright_s / 4.0, bench.devices().camera->limits().exposure_min_s);
+  if (bright_s < 2.0 * dim_s) throw Error("the scene is so bright that two exposures cannot be told apart; dim the point light");
   const double bright = steady_level(bench, bright_s), dim = steady_level(bench, dim_s);
+  int latest = 0;
   for (int i = 0; i < kChanges; ++i) {
     const bool to_bright = i % 2 == 0;
     const int late = late_after_change(bench, to_bright ? bright_s : dim_s, to_bright ? bright : dim,
                                        to_bright ? dim : bright, found.honest_late_frames);
-    found.settings_latency_frames = std::max(found.settings_latency_frames, late);
+    latest = std::max(latest, late);
   }
-  bench.set_latency(found.settings_latency_frames);
+  found.settings_latency_frames = latest;
+  bench.set_latency(latest);
   return found;
 }
 
 void check_clock(const TestBench& bench, TimingFindings& found) {
   std::vector<double> overheads;
+  for (const TimedFrame& frame : bench.frames()) overheads.push_back(frame.arrived_s - frame.shot_s - frame.exposure_s);
+  // Clocks are compared on the quicker half: what held up the others says nothing of them.
+  const double quick_s = median_of(overheads);
   std::vector<CurvePoint> clocks;
-  for (const TimedFrame& frame : bench.frames()) {
-    overheads.push_back(frame.arrived_s - frame.shot_s - frame.exposure_s);
-    clocks.push_back({frame.arrived_s, frame.device_s - frame.arrived_s});
+  for (std::size_t i = 0; i < overheads.size(); ++i) {
+    const TimedFrame& frame = bench.frames()[i];
+    if (overheads[i] <= quick_s) clocks.push_back({frame.arrived_s, frame.device_s - frame.arrived_s});
   }
   found.frame_overhead_s = {median_of(overheads), deviation_of(overheads) / std::sqrt(double(overheads.size()))};
   found.slowest_overhead_s = *std::max_element(overheads.begin(), overheads.end());

@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "drivers/error.h"
 #include "rig/console/duration_text.h"
 
 namespace lumitexel {
@@ -19,6 +20,19 @@ CommandResult capture_result(const SessionStore& session, const SequenceSummary&
        << " of them taken now in " << duration_text(summary.seconds) << " on the rig's clock\n";
   result.text = text.str();
   return result;
+}
+
+CommandResult capture_and_tell(SessionStore& session, RigDevices& devices, CommandContext& context) {
+  try {
+    return capture_result(session, take_missing_shots(session, devices, context.progress, context.stop));
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& error) {
+    const std::string text = error.what();
+    const std::string paused = text.starts_with("NOT SAFE") ? "" : "; lamps are off and axes halted";
+    throw Error(text + paused + ". " + std::to_string(session.frames().size()) +
+                " frames are kept; mend the cause, then `lumitexel resume " + session.directory().string() + "`");
+  }
 }
 
 }  // namespace lumitexel

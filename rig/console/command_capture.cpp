@@ -27,7 +27,7 @@ CommandResult run(const CaptureOptions& options, CommandContext& context) {
   };
   RigDevices devices = backend.connect(context.stop);
   SessionStore session = begin_session(options.out, content);
-  return capture_result(session, take_missing_shots(session, devices, context.progress, context.stop));
+  return capture_and_tell(session, devices, context);
 }
 
 }  // namespace

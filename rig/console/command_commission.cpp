@@ -1,4 +1,6 @@
-#include <fstream>
+#include <unistd.h>
+
+#include <filesystem>
 #include <memory>
 #include <sstream>
 
@@ -6,6 +8,7 @@
 #include "rig/commission/commission_rig.h"
 #include "rig/commission/measured_rig.h"
 #include "rig/console/command.h"
+#include "rig/console/commission_page.h"
 #include "rig/console/rig_backend.h"
 #include "rig/rig_file.h"
 #include "rig/whole_file.h"
@@ -16,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct CommissionOptions {
-  std::string rig, out;
+  std::string rig, out, page;
 };
 
 nlohmann::json json_of(const Measured& measured) { return {{"value", measured.value}, {"sigma", measured.sigma}}; }
@@ -43,12 +46,13 @@ nlohmann::json json_of(const SensorFindings& sensor) {
 }
 
 nlohmann::json json_of(const TimingFindings& timing) {
-  nlohmann::json json{{"settings_latency_frames", timing.settings_latency_frames},
+  nlohmann::json json{{"settings_latency_frames", nullptr},
                       {"honest_late_frames", timing.honest_late_frames},
                       {"frame_overhead_s", json_of(timing.frame_overhead_s)},
                       {"slowest_overhead_s", timing.slowest_overhead_s},
                       {"clock_drift_ppm", nullptr},
                       {"clock_jitter_s", timing.clock_jitter_s}};
+  if (timing.settings_latency_frames) json["settings_latency_frames"] = *timing.settings_latency_frames;
   if (timing.clock_drift_ppm) json["clock_drift_ppm"] = json_of(*timing.clock_drift_ppm);
   return json;
 }
@@ -84,8 +88,12 @@ std::string text_of(const CommissionReport& report, const RigDescription& rig) {
       << " e/s; hot pixels: " << 100.0 * sensor.hot_pixel_share << " %\n"
       << "  non-linearity: " << sensor.nonlinearity_percent << " % of the signal at most\n"
       << "  point light, frame to frame: " << sensor.lamp_instability_percent << " %\n"
-      << "timing\n  settings land " << report.timing.settings_latency_frames << " frames late, "
-      << report.timing.honest_late_frames << " of them say so\n  a frame takes its exposure and "
+      << "timing\n";
+  if (report.timing.settings_latency_frames) {
+    out << "  settings land " << *report.timing.settings_latency_frames << " frames late, "
+        << report.timing.honest_late_frames << " of them say so\n";
+  }
+  out << "  a frame takes its exposure and "
       << report.timing.frame_overhead_s.value << " s, at most " << report.timing.slowest_overhead_s << " s (described: "
       << rig.camera.limits.readout_s << ")\n";
   if (report.timing.clock_drift_ppm) {
@@ -108,10 +116,19 @@ std::string base_for(const fs::path& rig, const fs::path& out) {
   return whole.parent_path() == folder ? whole.filename().string() : whole.string();
 }
 
-CommandResult run(const CommissionOptions& options, CommandContext& context) {
-  if (!options.out.empty() && fs::exists(options.out)) {
-    throw BadInput("--out", options.out + " is there already", "a new file's name");
+// Before minutes of measuring.
+void require_new_file(const std::string& option, const fs::path& file) {
+  if (file.empty()) return;
+  if (fs::exists(file)) throw BadInput(option, file.string() + " is there already", "a new file's name");
+  const fs::path folder = fs::absolute(file).parent_path();
+  if (!fs::is_directory(folder) || access(folder.c_str(), W_OK) != 0) {
+    throw BadInput(option, folder.string() + " is no folder that can be written to", "a file in a folder that is there");
   }
+}
+
+CommandResult run(const CommissionOptions& options, CommandContext& context) {
+  require_new_file("--out", options.out);
+  require_new_file("--page", options.page);
   const RigDescription rig = parse_rig(read_rig_file(options.rig), options.rig);
   const RigBackend backend = rig_backend(commissioning_description(rig), options.rig);
   RigDevices devices = backend.connect(context.stop);
@@ -127,6 +144,11 @@ CommandResult run(const CommissionOptions& options, CommandContext& context) {
     result.json["out"] = options.out;
     result.text += "\nthe measured rig: " + options.out + "\n";
   }
+  if (!options.page.empty()) {
+    write_whole_file(options.page, commission_page(report, rig, result.json.dump(1)));
+    result.json["page"] = options.page;
+    result.text += "curves: " + options.page + "\n";
+  }
   return result;
 }
 
@@ -138,7 +160,8 @@ void add_commission_command(CLI::App& app, CommandAction& action) {
       "commission", "Measure a connected rig: latency, linearity, noise, settling, backlash, clocks; write what it is");
   command->add_option("RIG", options->rig, "Rig description, TOML")->required();
   command->add_option("--out", options->out, "Write the measured description here: a rig file that builds on RIG");
-  command->footer("Put something with visible detail on the turntable, in the point light. Nothing is stored but --out.");
+  command->add_option("--page", options->page, "Write numbers and curves here: one offline HTML page");
+  command->footer("Put something with visible detail on the turntable, in the point light. Nothing is stored but --out and --page.");
   command->callback(
       [options, &action] { action = [options](CommandContext& context) { return run(*options, context); }; });
 }

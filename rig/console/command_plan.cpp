@@ -1,3 +1,4 @@
+#include <cmath>
 #include <map>
 #include <memory>
 #include <sstream>
@@ -30,6 +31,20 @@ std::string summary_text(const CapturePlan& plan, const RigDescription& rig, con
   return text.str();
 }
 
+// Exposures that the camera can only approximate: {asked for, applied} in s.
+std::vector<std::pair<double, double>> approximated(const CapturePlan& plan, const CameraLimits& limits) {
+  constexpr double kWorthSaying = 1e-3;  // relative
+  std::vector<double> asked{plan.silhouette_exposure_s, plan.spheres_ring_exposure_s, plan.spheres_point_exposure_s};
+  asked.insert(asked.end(), plan.bracket_exposures_s.begin(), plan.bracket_exposures_s.end());
+  asked.insert(asked.end(), plan.gray_card_exposures_s.begin(), plan.gray_card_exposures_s.end());
+  std::vector<std::pair<double, double>> found;
+  for (const double exposure_s : asked) {
+    const double applied_s = quantise({exposure_s, plan.gain_db}, limits, "the rig's camera").exposure_s;
+    if (std::abs(applied_s / exposure_s - 1.0) > kWorthSaying) found.emplace_back(exposure_s, applied_s);
+  }
+  return found;
+}
+
 CommandResult run(const PlanOptions& options) {
   const CaptureInputs inputs = read_capture_inputs(options.rig, options.plan, options.mesh);
   const auto& [rig, plan, shots] = std::tie(inputs.rig, inputs.plan, inputs.shots);
@@ -44,6 +59,13 @@ CommandResult run(const PlanOptions& options) {
                  {"motion_s", estimate.motion_s},
                  {"bytes", estimate.bytes}};
   result.text = summary_text(plan, rig, shots, estimate);
+  result.json["approximated_s"] = nlohmann::json::array();
+  for (const auto& [asked_s, applied_s] : approximated(plan, rig.camera.limits)) {
+    result.json["approximated_s"].push_back({asked_s, applied_s});
+    std::ostringstream line;
+    line << "note        the camera takes " << applied_s << " s for the plan's exposure of " << asked_s << " s\n";
+    result.text += line.str();
+  }
   return result;
 }
 

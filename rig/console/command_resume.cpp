@@ -24,7 +24,7 @@ CommandResult run(const std::string& directory, CommandContext& context) {
   const std::string where = session.document("rig.path");
   const RigBackend backend = rig_backend(parse_rig(session.document("rig.toml"), where), where);
   RigDevices devices = backend.connect(context.stop);
-  return capture_result(session, take_missing_shots(session, devices, context.progress, context.stop));
+  return capture_and_tell(session, devices, context);
 }
 
 }  // namespace

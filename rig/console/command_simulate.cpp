@@ -35,7 +35,14 @@ std::pair<Fault, double> parse_fault(const std::string& text) {
 
 std::shared_ptr<FaultSource> fault_source(const SimulateOptions& options) {
   std::map<Fault, double> probabilities;
-  for (const std::string& text : options.faults) probabilities.insert_or_assign(parse_fault(text).first, parse_fault(text).second);
+  double sum = 0.0;
+  for (const std::string& text : options.faults) {
+    const auto [fault, probability] = parse_fault(text);
+    if (fault == Fault::None || probabilities.contains(fault)) throw BadInput("--fault", "'" + text + "'", "a fault, once");
+    probabilities[fault] = probability;
+    sum += probability;
+  }
+  if (sum > 1.0) throw BadInput("--fault", "probabilities that sum up to more than 1", "at most 1 in all");
   return std::make_shared<RandomFaults>(probabilities, options.seed);
 }
 

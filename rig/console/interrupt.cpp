@@ -4,7 +4,15 @@
 #include <cstdlib>
 #include <thread>
 
+#include "drivers/clock.h"
+
 namespace lumitexel {
+
+namespace {
+
+constexpr double kLampsOff_s = 1.5;
+
+}  // namespace
 
 std::stop_token stop_on_interrupt() {
   static std::stop_source source;
@@ -12,6 +20,9 @@ std::stop_token stop_on_interrupt() {
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGHUP);   // the terminal or the connection to it is gone
+  sigaddset(&signals, SIGQUIT);
+  std::signal(SIGPIPE, SIG_IGN);  // nobody reads our progress any more: no reason to leave a lamp on
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // inherited by every thread that starts later
   // Detached: it waits for a signal for as long as the program lives.
   std::thread([signals] {
@@ -19,7 +30,10 @@ std::stop_token stop_on_interrupt() {
     sigwait(&signals, &number);
     source.request_stop();
     sigwait(&signals, &number);
-    std::_Exit(128 + number);  // what is committed is safe; the rest is what the user wants gone
+    // What is committed is safe. The lamps may not be off yet: they get as long as a controller needs to say so.
+    SystemClock clock;
+    clock.sleep_until(clock.now_s() + kLampsOff_s, {});
+    std::_Exit(128 + number);
   }).detach();
   return source.get_token();
 }

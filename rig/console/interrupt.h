@@ -5,7 +5,8 @@
 
 namespace lumitexel {
 
-// From now on the first SIGINT or SIGTERM requests a stop, from a thread of its own; a second one ends the program at once. Call
+// From now on the first SIGINT, SIGTERM, SIGHUP or SIGQUIT requests a stop, from a thread of its own; a second one ends the
+// program after a second and a half, in which lamps go off. Output that nobody reads any more ends nothing. Call
 // before any other thread starts. Without this call both signals end the program as usual.
 std::stop_token stop_on_interrupt();
 

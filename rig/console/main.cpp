@@ -55,7 +55,7 @@ int run(const CommandAction& action, bool json, std::stop_token stop) {
     return kBadInput;
   } catch (const Cancelled&) {
     progress.finish();
-    std::cerr << "lumitexel: stopped as asked; a capture keeps what it has, and `lumitexel resume SESSION` goes on\n";
+    std::cerr << "lumitexel: stopped as asked; lamps are off. A session keeps what it has, and `lumitexel resume` with its folder goes on\n";
     return kFailed;
   } catch (const std::exception& error) {
     progress.finish();

@@ -159,9 +159,22 @@ TEST(CameraContract, AFullCardOrACancelIsNotRepeated) {
   ScriptedCamera camera;
   camera.triggers.push_back([](Frame&) { throw StorageFull("card full"); });
   EXPECT_THROW(camera.shoot(kAsked, {}), StorageFull);
+  EXPECT_EQ(camera.frames, 1);
+  camera.triggers.push_back([](Frame&) { throw Cancelled("stop"); });
+  EXPECT_THROW(camera.shoot(kAsked, {}), Cancelled);
+  EXPECT_EQ(camera.frames, 2);
+}
+
+TEST(CameraContract, WhatACancelledShotLeftOnItsWayMeetsNoLaterShot) {
+  ScriptedCamera camera;
+  camera.shoot(kAsked, {});
   camera.triggers.push_back([](Frame&) { throw Cancelled("stop"); });
   EXPECT_THROW(camera.shoot(kAsked, {}), Cancelled);
   EXPECT_EQ(camera.recoveries, 0);
+  camera.shoot(kAsked, {});
+  EXPECT_EQ(camera.recoveries, 1);
+  camera.shoot(kAsked, {});
+  EXPECT_EQ(camera.recoveries, 1);
 }
 
 TEST(CameraContract, SettingsThatDoNotStickNeverReachTheTrigger) {

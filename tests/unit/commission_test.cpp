@@ -143,7 +143,7 @@ TEST(Commission, TellsHowLateSettingsLandAlsoOfACameraThatLies) {
       devices.camera = std::make_unique<LateCamera>(devices.clock, late, honest);
       NoProgress progress;
       const CommissionReport report = commission_rig(devices, rig, progress, {});
-      EXPECT_EQ(report.timing.settings_latency_frames, late) << (honest ? "honest" : "lying");
+      EXPECT_EQ(report.timing.settings_latency_frames.value(), late) << (honest ? "honest" : "lying");
       EXPECT_EQ(report.timing.honest_late_frames, honest ? late : 0);
       // A picture without noise or detail shows neither gain nor motion, and that is said.
       EXPECT_THAT(report.not_checked, Contains(HasSubstr("photon transfer")));

@@ -13,7 +13,7 @@ using testing::IsEmpty;
 
 struct Log {
   std::atomic<int> safe_calls = 0, kicks = 0;
-  std::atomic<bool> answers = true, hangs = false;
+  std::atomic<bool> answers = true, hangs = false, hears = true;
 };
 
 class LoggingChannel final : public SafetyChannel {
@@ -25,7 +25,10 @@ class LoggingChannel final : public SafetyChannel {
     while (log_.hangs) std::this_thread::yield();
     return log_.answers;
   }
-  void keep_alive() noexcept override { ++log_.kicks; }
+  bool keep_alive() noexcept override {
+    ++log_.kicks;
+    return log_.hears;
+  }
 
  private:
   std::string name_;
@@ -96,6 +99,25 @@ TEST_F(SafetyLaneTest, SignsOfLifeInTimeKeepItWatching) {
   lane->expect_life_within(10s, "first");
   lane->expect_life_within(0s, "nothing");
   EXPECT_FALSE(within(50ms, [&] { return lane->is_tripped(); }));
+}
+
+TEST_F(SafetyLaneTest, AControllerThatHasGoneDeafTripsIt) {
+  lamps_.hears = false;
+  const auto lane = this->lane();
+  EXPECT_TRUE(within(10s, [&] { return lane->is_tripped(); }));
+  EXPECT_THAT(lane->cause(), HasSubstr("lamps no longer answers its safety connection"));
+  EXPECT_THAT(lane->wait_until_safe(5s), IsEmpty());
+}
+
+TEST_F(SafetyLaneTest, LettingGoMakesSafeOnceMoreAlsoAfterATrip) {
+  {
+    const auto lane = this->lane();
+    lane->trip("test");
+    EXPECT_THAT(lane->wait_until_safe(5s), IsEmpty());
+    table_.safe_calls = lamps_.safe_calls = 0;
+  }
+  EXPECT_GE(table_.safe_calls, 1);
+  EXPECT_GE(lamps_.safe_calls, 1);
 }
 
 TEST_F(SafetyLaneTest, AfterAResetItWatchesAgain) {

@@ -111,8 +111,10 @@ TEST_P(Safety, LeavesOtherControllersAlone) {
   const ModbusBench bench(GetParam());
   ModbusMaps maps = mixed_maps();
   maps.turntable.controller = "another";
-  const ModbusSafety safety(bench.link, {}, {maps.turntable});
+  ModbusSafety safety(bench.link, {}, {maps.turntable});
   bench.bench->start_move(BenchAxis::Turntable, 90.0);
+  safety.make_safe();
+  EXPECT_TRUE(bench.bench->motion(BenchAxis::Turntable).moving);
   EXPECT_TRUE(safety.axes_without_stop() == 0);
   EXPECT_EQ(bench.server->controller().received_stops().size(), 0u);
 }
