@@ -105,7 +105,6 @@ void add_pauses(CampaignResult& result, const AttendedCapture& capture) {
   result.incomplete_sessions += capture.complete ? 0 : 1;
   for (const SafePause& pause : capture.pauses) {
     ++result.pauses[pause.device + ": " + pause.cause + (pause.connecting ? " (connecting)" : "")];
-    result.longest_pause_s = std::max(result.longest_pause_s, pause.seconds);
     const bool named = pause.device != "none", safe = pause.at_rest && pause.message.find("NOT SAFE") == std::string::npos;
     result.unnamed_pauses += named ? 0 : 1;
     result.unsafe_pauses += safe ? 0 : 1;

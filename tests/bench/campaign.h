@@ -31,7 +31,6 @@ struct CampaignResult {
   std::map<std::string, std::uint64_t> operations;  // by device as above
   int connections = 0, unsafe_pauses = 0, unnamed_pauses = 0, incomplete_sessions = 0;
   std::uint64_t exposures = 0;
-  double longest_pause_s = 0.0;  // from the start of an attempt, with all shots before it
   double seconds = 0.0;
   std::vector<std::string> remarkable;          // messages of pauses that should not be
   int mislabelled = 0, lost = 0, duplicated = 0;

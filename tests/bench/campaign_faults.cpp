@@ -20,7 +20,7 @@ FaultRates scaled(FaultRates rates, double scale) {
 std::map<Fault, double> of_controller() {
   std::map<Fault, double> faults = of_connection(2e-4);
   faults[Fault::StuckAxis] = 0.01;  // at starts of motions alone
-  faults[Fault::LampFails] = 0.008;
+  faults[Fault::LampFails] = 0.015;
   return faults;
 }
 

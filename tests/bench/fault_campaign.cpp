@@ -43,9 +43,8 @@ void print_table(const CampaignResult& result) {
   }
   print_counts("discarded attempts by cause", result.discards);
   print_counts("safe pauses by device and cause", result.pauses);
-  std::printf("connections %d; pauses not at rest %d, that name no device %d; sessions given up %d; longest run up to a pause %.0f s\n",
-              result.connections, result.unsafe_pauses, result.unnamed_pauses, result.incomplete_sessions,
-              result.longest_pause_s);
+  std::printf("connections %d; pauses not at rest %d, that name no device %d; sessions given up %d\n", result.connections,
+              result.unsafe_pauses, result.unnamed_pauses, result.incomplete_sessions);
   for (const std::string& message : result.remarkable) std::printf("  remarkable: %s\n", message.c_str());
   std::printf("mislabelled %d, lost %d, duplicated %d\n%s", result.mislabelled, result.lost, result.duplicated,
               result.check.text().c_str());

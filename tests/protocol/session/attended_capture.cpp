@@ -65,15 +65,12 @@ AttendedCapture capture_attended(ProtocolRig& rig, SessionStore& session, int mo
   SystemClock clock;
   AttendedCapture capture;
   const double start_s = clock.now_s();
-  double last_s = start_s;
   std::size_t missing = session.missing_shots().size();
   for (int stalls = 0; stalls < most_stalls;) {
     ++capture.connections;
     std::optional<SafePause> pause = take_once(rig, session, stop);
     capture.complete = !pause;
     if (!pause) break;
-    pause->seconds = clock.now_s() - last_s;
-    last_s = clock.now_s();
     capture.pauses.push_back(*pause);
     rig.mend();
     const std::size_t still_missing = session.missing_shots().size();

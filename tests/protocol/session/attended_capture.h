@@ -18,7 +18,6 @@ struct SafePause {
   std::string cause;        // "Timeout", "Disconnected", …; "Error" for a trip of the safety lane
   std::string message;
   bool at_rest = true;      // lamps dark and axes standing when it was reported
-  double seconds = 0.0;     // from the start or the pause before
 };
 
 struct AttendedCapture {
