@@ -51,6 +51,7 @@ void SafetyLane::trip(const std::string& cause) noexcept {
     if (tripped_) return;
     cause_ = cause;
     for (const std::unique_ptr<Guard>& one : guards_) one->safe = false;
+    ++trips_;
     tripped_ = true;
   } catch (const std::exception&) {
     tripped_ = true;  // without its cause, which found no memory
@@ -99,6 +100,7 @@ void SafetyLane::reset() {
   tripped_ = false;
   cause_.clear();
   life_due_ = SteadyTime::max();
+  changed_.notify_all();
 }
 
 // One controller. make_safe() is repeated after its acknowledgement: a command of the sequencer's that was under way
@@ -114,15 +116,16 @@ void SafetyLane::guard(std::stop_token stop, Guard& guarded) {
       changed_.wait_for(lock, stop, keep_alive_period_, [this] { return tripped_.load(); });
       continue;
     }
+    const std::uint64_t trip = trips_;
     lock.unlock();
     const bool acknowledged = guarded.channel->make_safe();
     lock.lock();
-    if (acknowledged && !guarded.safe) {
+    if (acknowledged && trip == trips_ && !guarded.safe) {
       guarded.safe = true;
       changed_.notify_all();
     }
     changed_.wait_for(lock, stop, acknowledged ? kRepeatAcknowledged : kRepeatUnacknowledged,
-                      [this] { return !tripped_.load(); });
+                      [&] { return !tripped_ || trips_ != trip; });
   }
 }
 
@@ -131,11 +134,12 @@ void SafetyLane::watch(std::stop_token stop) {
   std::unique_lock lock(mutex_);
   while (!stop.stop_requested()) {
     if (tripped_) {
+      const std::uint64_t trip = trips_;
       const std::function<void()> listener = std::exchange(listener_, {});
       lock.unlock();
       if (listener) listener();
       lock.lock();
-      changed_.wait(lock, stop, [this] { return !tripped_.load(); });
+      changed_.wait(lock, stop, [&] { return !tripped_ || trips_ != trip; });
       continue;
     }
     const SteadyTime due = life_due_;
