@@ -37,7 +37,8 @@ std::string kind_of(const std::string& cause) {
   for (const auto& [part, kind] : kKinds) {
     if (cause.find(part) != std::string::npos) return kind;
   }
-  std::string rest = cause.substr(0, 90);
+  const std::size_t name_end = cause.starts_with("camera ") ? cause.find(": ") : std::string::npos;
+  std::string rest = cause.substr(name_end == std::string::npos ? 0 : name_end + 2, 90);
   for (char& c : rest) {
     if (c >= '0' && c <= '9') c = '#';
   }
@@ -105,10 +106,12 @@ void add_pauses(CampaignResult& result, const AttendedCapture& capture) {
   result.incomplete_sessions += capture.complete ? 0 : 1;
   for (const SafePause& pause : capture.pauses) {
     ++result.pauses[pause.device + ": " + pause.cause + (pause.connecting ? " (connecting)" : "")];
-    const bool named = pause.device != "none", safe = pause.at_rest && pause.message.find("NOT SAFE") == std::string::npos;
+    const bool named = pause.device != "none", safe = pause.at_rest || pause.told_unsafe;
     result.unnamed_pauses += named ? 0 : 1;
     result.unsafe_pauses += safe ? 0 : 1;
-    if (!named || !safe || pause.cause == "Error" || pause.cause == "BadInput") result.remarkable.push_back(pause.message);
+    result.told_unsafe_pauses += pause.told_unsafe ? 1 : 0;
+    const bool expected = named && safe && pause.cause != "Error" && pause.cause != "BadInput";
+    if (!expected) result.remarkable.push_back(pause.message);
   }
 }
 

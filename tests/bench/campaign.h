@@ -29,7 +29,10 @@ struct CampaignResult {
   std::map<std::string, int> discards;          // by cause
   std::map<std::string, int> pauses;            // "device: cause"
   std::map<std::string, std::uint64_t> operations;  // by device as above
-  int connections = 0, unsafe_pauses = 0, unnamed_pauses = 0, incomplete_sessions = 0;
+  int connections = 0, incomplete_sessions = 0;
+  int unnamed_pauses = 0;     // that name no device
+  int unsafe_pauses = 0;      // with a lamp lit or an axis moving, and nothing said of it
+  int told_unsafe_pauses = 0;  // that say which controller has not acknowledged lamps off and axes stopped
   std::uint64_t exposures = 0;
   double seconds = 0.0;
   std::vector<std::string> remarkable;          // messages of pauses that should not be

@@ -43,8 +43,10 @@ void print_table(const CampaignResult& result) {
   }
   print_counts("discarded attempts by cause", result.discards);
   print_counts("safe pauses by device and cause", result.pauses);
-  std::printf("connections %d; pauses not at rest %d, that name no device %d; sessions given up %d\n", result.connections,
-              result.unsafe_pauses, result.unnamed_pauses, result.incomplete_sessions);
+  std::printf("connections %d; sessions given up %d; pauses not at rest without a word %d, that say NOT SAFE %d, that name no "
+              "device %d\n",
+              result.connections, result.incomplete_sessions, result.unsafe_pauses, result.told_unsafe_pauses,
+              result.unnamed_pauses);
   for (const std::string& message : result.remarkable) std::printf("  remarkable: %s\n", message.c_str());
   std::printf("mislabelled %d, lost %d, duplicated %d\n%s", result.mislabelled, result.lost, result.duplicated,
               result.check.text().c_str());
@@ -57,6 +59,7 @@ nlohmann::json json_of(const CampaignResult& result) {
           {"injected", result.injected},      {"operations", result.operations},
           {"discards", result.discards},      {"pauses", result.pauses},
           {"connections", result.connections}, {"unsafe_pauses", result.unsafe_pauses},
+          {"told_unsafe_pauses", result.told_unsafe_pauses},
           {"unnamed_pauses", result.unnamed_pauses}, {"incomplete_sessions", result.incomplete_sessions},
           {"mislabelled", result.mislabelled}, {"lost", result.lost},
           {"duplicated", result.duplicated}};

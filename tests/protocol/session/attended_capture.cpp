@@ -31,6 +31,7 @@ std::optional<SafePause> take_once(ProtocolRig& rig, SessionStore& session, std:
     pause.message = error.what();
   }
   pause.at_rest = rig.is_at_rest();
+  pause.told_unsafe = pause.message.find("NOT SAFE") != std::string::npos;
   pause.device = device_in(pause.message);
   return pause;
 }

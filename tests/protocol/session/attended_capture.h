@@ -18,6 +18,7 @@ struct SafePause {
   std::string cause;        // "Timeout", "Disconnected", …; "Error" for a trip of the safety lane
   std::string message;
   bool at_rest = true;      // lamps dark and axes standing when it was reported
+  bool told_unsafe = false;  // the message says that a controller has not acknowledged that
 };
 
 struct AttendedCapture {

@@ -35,7 +35,7 @@ class SamePixels : public testing::TestWithParam<CameraKind> {
     if (GetParam() == CameraKind::Still) offer_only_the_ptp_driver();
     rig_ = rendered_rig(GetParam());
     world_ = small_world(rig_);
-    shots_ = synthetic_shots(6, rig_, 11, 2);
+    shots_ = synthetic_shots(4, rig_, 11, 2);
     // A few positions that show something, to the thousandth that registers hold.
     for (Shot& shot : shots_) {
       shot.turntable_deg = 10.5 * static_cast<double>(shot.id);
@@ -107,7 +107,7 @@ TEST_P(SamePixels, AfterAResumeInMidSession) {
   {
     const auto rig = served();
     RigDevices devices = rig->connect();
-    take_shots(session, devices, {shots_.begin(), shots_.begin() + 3}, nobody, {});
+    take_shots(session, devices, {shots_.begin(), shots_.begin() + 2}, nobody, {});
   }
   const auto rig = served();  // another day: everything has been off
   RigDevices devices = rig->connect();
@@ -115,12 +115,12 @@ TEST_P(SamePixels, AfterAResumeInMidSession) {
   expect_same(in_process(), session);
 }
 
+// That the comparison can fail.
 TEST_P(SamePixels, ButNotUnderAnotherSeed) {
-  RigDescription other = rig_;
   SimulationSettings settings = plain_settings();
   settings.seed += 1;
-  world_ = small_world(other, settings);
-  SessionStore changed = in_process();
+  world_ = small_world(rig_, settings);
+  { const SessionStore changed = in_process(); }
   world_ = small_world(rig_);
   std::filesystem::rename(folder_ / "in_process", folder_ / "other");
   const SessionStore moved = SessionStore::open(folder_ / "other", OpenMode::ReadOnly);

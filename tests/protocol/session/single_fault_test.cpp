@@ -23,11 +23,11 @@ void expect_no_objection(CameraKind camera, std::uint64_t step) {
   EXPECT_GE(4 * happened, 3 * all.size());
 }
 
-TEST(SingleFault, OfAGigeRigEndsInACompleteSessionOrASafePause) { expect_no_objection(CameraKind::Gige, 24); }
+TEST(SingleFault, OfAGigeRigEndsInACompleteSessionOrASafePause) { expect_no_objection(CameraKind::Gige, 30); }
 
 TEST(SingleFault, OfAStillRigEndsInACompleteSessionOrASafePause) {
   offer_only_the_ptp_driver();
-  expect_no_objection(CameraKind::Still, 60);
+  expect_no_objection(CameraKind::Still, 80);
 }
 
 }  // namespace
