@@ -80,6 +80,7 @@ TEST(Guards, KeepStaleFramesAway) {
 TEST(Guards, KeepStaleFramesAwayWithoutNames) {
   ProtocolRigOptions options;
   options.frames_named = false;
+  options.serving.gige.timestamp_latch = false;
   options.faults = often(Fault::StaleFrame, 2);
   const SessionCheck check = guarded(options);
   EXPECT_EQ(check.duplicated(), 0) << check.text();
