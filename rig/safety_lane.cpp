@@ -25,7 +25,6 @@ void prefer_this_thread() {
 struct SafetyLane::Guard {
   std::unique_ptr<SafetyChannel> channel;
   bool safe = false;     // acknowledged since the trip; under the lane's mutex
-  bool goodbye = false;  // told once more since the lane is leaving
   std::jthread thread;
 };
 
@@ -46,8 +45,8 @@ SafetyLane::~SafetyLane() {
   trip("the program lets go of the rig");
   {
     const std::lock_guard lock(mutex_);  // also when it had tripped before
-    for (const std::unique_ptr<Guard>& one : guards_) one->safe = one->goodbye = false;
-    leaving_ = true;
+    for (const std::unique_ptr<Guard>& one : guards_) one->safe = false;
+    ++trips_;
   }
   changed_.notify_all();
   for (const std::string& name : wait_until_safe(kLastGoodbye)) {
@@ -61,6 +60,7 @@ void SafetyLane::trip(const std::string& cause) noexcept {
     if (tripped_) return;
     cause_ = cause;
     for (const std::unique_ptr<Guard>& one : guards_) one->safe = false;
+    ++trips_;
     tripped_ = true;
   } catch (const std::exception&) {
     tripped_ = true;  // without its cause, which found no memory
@@ -109,6 +109,7 @@ void SafetyLane::reset() {
   tripped_ = false;
   cause_.clear();
   life_due_ = SteadyTime::max();
+  changed_.notify_all();
 }
 
 // One controller. make_safe() is repeated after its acknowledgement: a command of the sequencer's that was under way
@@ -130,17 +131,17 @@ void SafetyLane::guard(std::stop_token stop, Guard& guarded) {
       changed_.wait_for(lock, stop, keep_alive_period_, [this] { return tripped_.load(); });
       continue;
     }
+    const std::uint64_t trip = trips_;
     lock.unlock();
     const bool acknowledged = guarded.channel->make_safe();
     last_heard = std::chrono::steady_clock::now();
     lock.lock();
-    if (acknowledged && !guarded.safe) {
+    if (acknowledged && trip == trips_ && !guarded.safe) {
       guarded.safe = true;
       changed_.notify_all();
     }
-    if (leaving_) guarded.goodbye = true;
     changed_.wait_for(lock, stop, acknowledged ? kRepeatAcknowledged : kRepeatUnacknowledged,
-                      [&] { return !tripped_ || (leaving_ && !guarded.goodbye); });
+                      [&] { return !tripped_ || trips_ != trip; });
   }
 }
 
@@ -149,11 +150,12 @@ void SafetyLane::watch(std::stop_token stop) {
   std::unique_lock lock(mutex_);
   while (!stop.stop_requested()) {
     if (tripped_) {
+      const std::uint64_t trip = trips_;
       const std::function<void()> listener = std::exchange(listener_, {});
       lock.unlock();
       if (listener) listener();
       lock.lock();
-      changed_.wait(lock, stop, [this] { return !tripped_.load(); });
+      changed_.wait(lock, stop, [&] { return !tripped_ || trips_ != trip; });
       continue;
     }
     const SteadyTime due = life_due_;

@@ -12,6 +12,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -72,7 +73,7 @@ class SafetyLane {
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
   std::atomic<bool> tripped_ = false;
-  bool leaving_ = false;
+  std::uint64_t trips_ = 0;  // so far: a trip right after a reset is another one
   std::string cause_, doing_;
   std::chrono::steady_clock::time_point life_due_ = std::chrono::steady_clock::time_point::max();
   std::chrono::duration<double> life_time_{};

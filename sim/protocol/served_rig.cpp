@@ -36,7 +36,8 @@ PtpCameraOptions ptp_options(const GphotoConnection& connection) {
 }  // namespace
 
 ServedRig::ServedRig(const HardwareDescription& hardware, std::shared_ptr<SimulatedBench> bench,
-                     std::shared_ptr<FaultSource> faults) {
+                     std::shared_ptr<FaultSource> faults, const ServedRigOptions& options)
+    : options_(options) {
   serve_camera(hardware, bench, faults);
   for (const auto& [name, endpoint] : hardware.controllers) serve_controller(name, hardware, bench, faults);
 }
@@ -47,13 +48,15 @@ void ServedRig::serve_camera(const HardwareDescription& hardware, const std::sha
                              const std::shared_ptr<FaultSource>& faults) {
   if (const auto* aravis = std::get_if<AravisConnection>(&hardware.camera)) {
     require_loopback(aravis->address, "hardware.camera.address");
-    GigeCameraOptions options;
+    GigeCameraOptions options = options_.gige;
     options.address = aravis->address;
     gige_ = std::make_unique<GigeCameraServer>(bench, options, faults);
     places_.push_back("camera: GigE Vision at " + aravis->address);
     return;
   }
-  ptp_ = std::make_unique<PtpCameraServer>(bench, faults, ptp_options(std::get<GphotoConnection>(hardware.camera)));
+  PtpCameraOptions options = ptp_options(std::get<GphotoConnection>(hardware.camera));
+  options.late_reply_s = options_.ptp_late_by_s;
+  ptp_ = std::make_unique<PtpCameraServer>(bench, faults, options);
   places_.push_back("camera: PTP/IP at " + ptp_->gphoto_port());
 }
 
@@ -62,6 +65,7 @@ void ServedRig::serve_controller(const std::string& name, const HardwareDescript
                                  const std::shared_ptr<FaultSource>& faults) {
   ModbusServerSettings settings;
   settings.endpoint = hardware.controllers.at(name);
+  settings.late_by_s = options_.controller_late_by_s;
   if (!settings.endpoint.host.empty()) {
     require_loopback(settings.endpoint.host, "hardware.controllers." + name + ".host");
   }

@@ -130,6 +130,20 @@ TEST_F(SafetyLaneTest, AfterAResetItWatchesAgain) {
   EXPECT_TRUE(within(5s, [&] { return table_.kicks > kicks; }));
 }
 
+TEST_F(SafetyLaneTest, TrippedRightAfterAResetItActsAtOnce) {
+  const auto lane = this->lane();
+  for (int i = 1; i <= 20; ++i) {
+    std::atomic<bool> told = false;
+    lane->on_trip([&] { told = true; });
+    const int calls = table_.safe_calls;
+    lane->trip("test");
+    EXPECT_TRUE(within(500ms, [&] { return table_.safe_calls > calls && told; })) << "trip " << i;
+    EXPECT_THAT(lane->wait_until_safe(5s), IsEmpty());
+    lane->on_trip({});
+    lane->reset();
+  }
+}
+
 TEST_F(SafetyLaneTest, LettingGoOfTheRigLeavesItSafe) {
   this->lane().reset();
   EXPECT_GE(table_.safe_calls, 1);

@@ -135,7 +135,9 @@ void GigeExposures::carry_out(const ExposureOrder& order, std::stop_token stop) 
   if (fault == Fault::Disconnect || fault == Fault::Wedge) return;
   const std::uint64_t timestamp_ns = now_ns();
   const BenchExposure exposure = bench_->expose(settings, order.frame_name, stop);
-  CameraSettings claimed = options_.metadata_from_registers ? order.settings : settings;
+  // The fault says so; only the lateness that the description can declare may lie.
+  const bool from_registers = options_.metadata_from_registers && fault != Fault::LateSettings;
+  CameraSettings claimed = from_registers ? order.settings : settings;
   if (fault == Fault::FalseMetadata) claimed.exposure_s *= kFalseExposureFactor;
   auto frame = frame_of(order, exposure, claimed, timestamp_ns);
   deliver(std::move(frame), fault, stop);
