@@ -55,8 +55,11 @@ std::vector<Lane> lanes_of(const CampaignOptions& options) {
   const int still = options.still_rigs > 0 ? std::min(options.still_shots, options.shots) : 0;
   const int gige = options.shots - still;
   const auto share = [](int all, int parts, int part) { return all / parts + (part < all % parts ? 1 : 0); };
-  for (int i = 0; i < options.still_rigs; ++i) lanes.push_back({CameraKind::Still, share(still, options.still_rigs, i), i});
-  for (int i = 0; i < options.gige_rigs; ++i) lanes.push_back({CameraKind::Gige, share(gige, options.gige_rigs, i), i});
+  const auto add_rigs = [&](CameraKind camera, int shots, int rigs) {
+    for (int i = 0; i < rigs; ++i) lanes.push_back({camera, share(shots, rigs, i), i});
+  };
+  add_rigs(CameraKind::Still, still, options.still_rigs);
+  add_rigs(CameraKind::Gige, gige, options.gige_rigs);
   return lanes;
 }
 

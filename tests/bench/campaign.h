@@ -25,7 +25,8 @@ struct CampaignOptions {
 
 struct CampaignResult {
   SessionCheck check;                           // of all rigs together
-  std::map<std::string, std::map<std::string, int>> injected;  // by fault, then "camera (GigE)", "camera (still)", "controller"
+  // By fault, then "camera (GigE)", "camera (still)", "controller".
+  std::map<std::string, std::map<std::string, int>> injected;
   std::map<std::string, int> discards;          // by cause
   std::map<std::string, int> pauses;            // "device: cause"
   std::map<std::string, std::uint64_t> operations;  // by device as above

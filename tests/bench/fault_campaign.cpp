@@ -43,8 +43,8 @@ void print_table(const CampaignResult& result) {
   }
   print_counts("discarded attempts by cause", result.discards);
   print_counts("safe pauses by device and cause", result.pauses);
-  std::printf("connections %d; sessions given up %d; pauses not at rest without a word %d, that say NOT SAFE %d, that name no "
-              "device %d\n",
+  std::printf("connections %d; sessions given up %d; pauses not at rest without a word %d, that say NOT SAFE %d, that "
+              "name no device %d\n",
               result.connections, result.incomplete_sessions, result.unsafe_pauses, result.told_unsafe_pauses,
               result.unnamed_pauses);
   for (const std::string& message : result.remarkable) std::printf("  remarkable: %s\n", message.c_str());
@@ -98,7 +98,9 @@ int run(int argc, char** argv) {
   CLI::App app("Random faults over the protocols of simulated rigs: frames mislabelled, lost, duplicated");
   app.add_option("--shots", options.shots, "In all")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--gige-rigs", options.gige_rigs, "Side by side")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--still-rigs", options.still_rigs, "Side by side")->check(CLI::NonNegativeNumber)->capture_default_str();
+  app.add_option("--still-rigs", options.still_rigs, "Side by side")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   app.add_option("--still-shots", options.still_shots, "Of all shots, those by PTP/IP")->capture_default_str();
   app.add_option("--seed", options.seed)->capture_default_str();
   app.add_option("--fault-scale", options.fault_scale, "Of all probabilities")->capture_default_str();
@@ -106,8 +108,12 @@ int run(int argc, char** argv) {
   app.add_flag("--json", json, "The result on stdout as JSON");
   app.add_flag("--matrix", matrix, "Every single fault at every operation of a short session instead");
   app.add_flag("--still", still, "Of the matrix: with the still camera");
-  app.add_option("--step", step, "Of the matrix: every so many operations")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--threads", threads, "Of the matrix: cases side by side")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--step", step, "Of the matrix: every so many operations")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--threads", threads, "Of the matrix: cases side by side")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   if (matrix) return run_matrix(still ? CameraKind::Still : CameraKind::Gige, step, threads);
   const TemporaryFolder temporary;

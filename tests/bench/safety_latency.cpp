@@ -29,7 +29,9 @@ class BusyCores {
     for (unsigned i = 0; i < std::max(1u, std::thread::hardware_concurrency()); ++i) {
       threads_.emplace_back([](std::stop_token stop) {
         std::vector<double> image(1 << 20, 1.0);
-        for (std::size_t at = 0; !stop.stop_requested(); at = (at + 1) % image.size()) image[at] = std::sqrt(image[at] + 2.0);
+        for (std::size_t at = 0; !stop.stop_requested(); at = (at + 1) % image.size()) {
+          image[at] = std::sqrt(image[at] + 2.0);
+        }
         volatile double used = image.front();
         (void)used;
       });
@@ -65,7 +67,8 @@ int run(int trips) {
     arm_ms.push_back(latency.arm_ms);
     bare_ms.push_back(bare.round_trip_ms());
   }
-  const double table = print_latencies("Modbus TCP (table)", table_ms), arm = print_latencies("Modbus RTU (arm)", arm_ms);
+  const double table = print_latencies("Modbus TCP (table)", table_ms);
+  const double arm = print_latencies("Modbus RTU (arm)", arm_ms);
   print_latencies("bare terminal, no RTU", bare_ms);
   const auto said = [](double latency_ms) { return latency_ms <= kGoal_ms ? "reached" : "MISSED"; };
   std::printf("goal, 99.9 %% within %.0f ms: TCP %s, RTU %s\n", kGoal_ms, said(table), said(arm));

@@ -147,7 +147,8 @@ void ProtocolRig::mend() {
 
 bool ProtocolRig::is_at_rest() const {
   return std::none_of(kBenchLamps.begin(), kBenchLamps.end(), [&](BenchLamp lamp) { return bench_->is_lit(lamp); }) &&
-         std::none_of(kBenchAxes.begin(), kBenchAxes.end(), [&](BenchAxis axis) { return bench_->motion(axis).moving; });
+         std::none_of(kBenchAxes.begin(), kBenchAxes.end(),
+                      [&](BenchAxis axis) { return bench_->motion(axis).moving; });
 }
 
 void offer_only_the_ptp_driver() {

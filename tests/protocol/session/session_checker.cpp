@@ -139,7 +139,8 @@ class Checker {
 const char* to_string(Wrong wrong) { return kNames.at(static_cast<std::size_t>(wrong)); }
 
 int SessionCheck::count(Wrong how) const {
-  return static_cast<int>(std::count_if(wrong.begin(), wrong.end(), [how](const WrongFrame& w) { return w.how == how; }));
+  return static_cast<int>(
+      std::count_if(wrong.begin(), wrong.end(), [how](const WrongFrame& frame) { return frame.how == how; }));
 }
 
 int SessionCheck::mislabelled() const {
@@ -154,7 +155,8 @@ std::string SessionCheck::text() const {
   constexpr std::size_t kShown = 8;
   std::string text;
   for (std::size_t i = 0; i < std::min(kShown, wrong.size()); ++i) {
-    text += std::string(to_string(wrong[i].how)) + ": shot " + std::to_string(wrong[i].shot_id) + ": " + wrong[i].text + '\n';
+    const WrongFrame& frame = wrong[i];
+    text += std::string(to_string(frame.how)) + ": shot " + std::to_string(frame.shot_id) + ": " + frame.text + '\n';
   }
   if (wrong.size() > kShown) text += "and " + std::to_string(wrong.size() - kShown) + " more\n";
   return text;

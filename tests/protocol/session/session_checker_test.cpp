@@ -43,7 +43,8 @@ class SessionChecker : public testing::Test {
     const Lighting lit = lighting_of(shot.kind);
     Forged forged;
     forged.strip = {shot.camera,
-                    {shot.turntable_deg, shot.light_azimuth_deg, shot.light_elevation_deg, lit.point, lit.ring, lit.back},
+                    {shot.turntable_deg, shot.light_azimuth_deg, shot.light_elevation_deg, lit.point, lit.ring,
+                     lit.back},
                     static_cast<std::uint64_t>(shot.id),
                     static_cast<std::uint64_t>(10 + shot.id)};
     NewFrame& record = forged.record;

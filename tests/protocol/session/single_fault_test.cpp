@@ -23,7 +23,7 @@ void expect_no_objection(CameraKind camera, std::uint64_t step) {
   EXPECT_GE(4 * happened, 3 * all.size());
 }
 
-TEST(SingleFault, OfAGigeRigEndsInACompleteSessionOrASafePause) { expect_no_objection(CameraKind::Gige, 30); }
+TEST(SingleFault, OfAGigeRigEndsInACompleteSessionOrASafePause) { expect_no_objection(CameraKind::Gige, 40); }
 
 TEST(SingleFault, OfAStillRigEndsInACompleteSessionOrASafePause) {
   offer_only_the_ptp_driver();

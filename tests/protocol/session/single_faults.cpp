@@ -79,7 +79,9 @@ std::vector<SingleFault> fault_matrix(CameraKind camera, const SessionOperations
   const auto add = [&](const std::string& device, std::uint64_t count) {
     std::uint64_t first = 0;  // another one for each fault, so that together they cover more
     for (const Fault fault : faults_of(camera, device)) {
-      for (std::uint64_t at = 1 + first++ * 7 % step; at <= count; at += step) all.push_back({camera, device, fault, at});
+      for (std::uint64_t at = 1 + first++ * 7 % step; at <= count; at += step) {
+        all.push_back({camera, device, fault, at});
+      }
     }
   };
   add("camera", operations.camera);
@@ -99,7 +101,7 @@ SingleFaultOutcome suffer(const SingleFault& what) {
     outcome.happened = !faults->injected().empty();
     outcome.pauses = static_cast<int>(capture.pauses.size());
     outcome.objection = objection_to(capture, run.session);
-    if (outcome.objection.empty() && !run.rig.is_at_rest()) outcome.objection = "a lamp lit or an axis moving at the end";
+    if (outcome.objection.empty() && !run.rig.is_at_rest()) outcome.objection = "a lamp lit or an axis moving at last";
   } catch (const std::exception& error) {
     outcome.objection = std::string("threw ") + error.what();
   }
