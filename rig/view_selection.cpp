@@ -31,7 +31,10 @@ std::vector<std::string> items_of(std::string_view list) {
   std::vector<std::string> items;
   for (std::size_t start = 0; start <= list.size();) {
     const std::size_t end = std::min(list.find(',', start), list.size());
-    items.emplace_back(list.substr(start, end - start));
+    std::string_view item = list.substr(start, end - start);
+    while (item.starts_with(' ')) item.remove_prefix(1);
+    while (item.ends_with(' ')) item.remove_suffix(1);
+    items.emplace_back(item);
     start = end + 1;
   }
   return items;

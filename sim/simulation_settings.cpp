@@ -68,7 +68,10 @@ class Table {
 
   void refuse_the_rest() const {
     for (const auto& [key, node] : table_) {
-      if (!known_.contains(std::string(key.str()))) fail(std::string(key.str()), "unknown key", "a key of [simulation]");
+      if (known_.contains(std::string(key.str()))) continue;
+      std::string all;
+      for (const std::string& known : known_) all += (all.empty() ? "" : ", ") + known;
+      fail(std::string(key.str()), "unknown key", "one of " + all);
     }
   }
 

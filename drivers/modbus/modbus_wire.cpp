@@ -97,7 +97,11 @@ WireAnswer ModbusWire::connect(double timeout_s) {
   if (modbus_connect(context_->modbus) != 0) {
     // The library says "in progress" when it has waited for long enough.
     const bool late = errno == ETIMEDOUT || errno == EINPROGRESS;
-    const std::string cause = late ? no_answer(timeout_s) : modbus_strerror(errno);
+    // A port that somebody has opened for himself alone (TIOCEXCL, as libmodbus does) or locked.
+    const bool taken = serial_ && (errno == EBUSY || errno == EINVAL || errno == EAGAIN || errno == EACCES);
+    const std::string library = modbus_strerror(errno);
+    const std::string cause =
+        late ? no_answer(timeout_s) : library + (taken ? " (is another program using the port?)" : "");
     return {WireAnswer::Kind::Broken, "cannot connect: " + cause};
   }
   context_->open = true;

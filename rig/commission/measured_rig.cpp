@@ -26,7 +26,8 @@ void put(std::ostream& out, const char* key, const Measured& measured, const cha
 }
 
 void put_settle(std::ostream& out, const char* table, double settled_s, const std::string& what) {
-  out << "\n[" << table << "]\nsettle_s = " << std::max(kLeastSettle_s, kSettleMargin * settled_s) << "  # " << what << '\n';
+  out << "\n[" << table << "]\nsettle_s = " << std::max(kLeastSettle_s, kSettleMargin * settled_s) << "  # " << what
+      << ": pictures stand " << settled_s << " s after the encoder; a fifth added, at least " << kLeastSettle_s << '\n';
 }
 
 }  // namespace
@@ -50,11 +51,15 @@ std::string measured_rig_toml(const CommissionReport& report, const RigDescripti
   }
   double arm_s = -1.0;
   for (const AxisFindings& axis : report.axes) {
+    if (axis.backlash) {
+      out << "# " << axis.axis << ": slack " << axis.backlash->value << " +- " << axis.backlash->sigma
+          << " deg; no key of a rig takes it: approach from one side where it matters\n";
+    }
     if (!axis.settle_s) continue;
-    if (axis.axis == "turntable") put_settle(out, "turntable", *axis.settle_s, "pictures stand a sixth of this earlier");
+    if (axis.axis == "turntable") put_settle(out, "turntable", *axis.settle_s, "the table");
     else arm_s = std::max(arm_s, *axis.settle_s);
   }
-  if (arm_s >= 0.0) put_settle(out, "light_positioner", arm_s, "the slower of its two axes, a fifth added");
+  if (arm_s >= 0.0) put_settle(out, "light_positioner", arm_s, "the slower of its two axes");
   return out.str();
 }
 

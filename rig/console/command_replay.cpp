@@ -45,7 +45,7 @@ void add_replay_command(CLI::App& app, CommandAction& action) {
   command->add_option("--out", options->out, "The new session's folder: empty or not there yet")->required();
   command->add_option("--without", options->selection.without,
                       "What to leave out: view=NAME, view=INDEX (from 0 in the plan's order), views=FIRST..LAST, "
-                      "several by commas, or kind=dark and other kinds of shot; may be given again")
+                      "several by commas (views=0..2,heldout_000), or kind=dark and other kinds of shot; may be given again")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option("--only", options->selection.only,
