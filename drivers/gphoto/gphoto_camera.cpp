@@ -46,6 +46,13 @@ GphotoCamera::GphotoCamera(const GphotoConnection& connection, const CameraLimit
       clock_(clock),
       remote_(name_, connection, worker, clock) {
   remote_.connect({});
+  // Here and not at the first such shot, when the table has moved and a lamp is on.
+  for (const double exposure_s : limits_.exposure_choices_s) {
+    if (find_choice(remote_.exposure_choices(), parse_exposure_s, exposure_s)) continue;
+    std::ostringstream text;
+    text << exposure_s << " s, which the " << name_ << " does not have";
+    throw BadInput("camera.exposure_choices_s", text.str(), "some of " + listed(remote_.exposure_choices()));
+  }
 }
 
 void GphotoCamera::recover(std::stop_token stop) { remote_.connect(stop); }

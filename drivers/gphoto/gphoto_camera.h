@@ -33,7 +33,8 @@ class GphotoCamera final : public Camera {
  public:
   // Connects. limits: the camera's, as its raw files really are (camera_raw.h on their size). clock: a real one.
   // worker: the program lumitexel-gphoto-worker. Throws BadInput without a worker, Disconnected if the camera is not
-  // reached within reconnect_timeout_s, OutOfRange for a model or a port that libgphoto2 does not know.
+  // reached within reconnect_timeout_s, OutOfRange for a model or a port that libgphoto2 does not know; BadInput, too,
+  // for exposure_choices_s that are not all on the camera's dial.
   GphotoCamera(const GphotoConnection& connection, const CameraLimits& limits, std::shared_ptr<Clock> clock,
                const std::filesystem::path& worker = default_gphoto_worker());
 

@@ -55,20 +55,22 @@ WireAnswer ModbusLink::attempt(const Request& request) {
   const RequestTurns::Turn turn(turns_, false, endpoint_.give_up_s);
   if (!turn.taken()) throw Timeout("controller " + endpoint_.name + ": other requests keep its line busy");
   const double timeout_s = endpoint_.response_timeout_s;
-  if (const WireAnswer ready = make_ready(timeout_s); !ready.done()) return ready;
+  if (const WireAnswer ready = make_ready(timeout_s, [this] { return turns_.urgent_is_waiting(); }); !ready.done()) {
+    return ready;
+  }
   const WireAnswer answer = request(wire_, timeout_s);
   settle(answer);
   return answer;
 }
 
-WireAnswer ModbusLink::make_ready(double timeout_s) {
+WireAnswer ModbusLink::make_ready(double timeout_s, const GiveWay& give_way) {
   if (state_ == LinkState::Connected) return {};
   WireAnswer ready{Kind::Broken, ""};
   const bool serial = endpoint_.host.empty();
   if (state_ == LinkState::Suspect && serial) {
-    ready = wire_.fall_in_step(timeout_s);
+    ready = wire_.fall_in_step(timeout_s, give_way);
   } else if (ready = wire_.connect(timeout_s); ready.done()) {
-    ready = wire_.fall_in_step(timeout_s);
+    ready = wire_.fall_in_step(timeout_s, give_way);
   }
   // Silence where an echo was due leaves the line suspect; a port that is opened again does not make it better.
   state_ = ready.done() ? LinkState::Connected

@@ -56,7 +56,7 @@ class ModbusLink {
   // reconnection, each ending after timeout_s; a port that is gone is looked for a few times more. True if all were
   // acknowledged at one of them. A write that fails does not keep the others from being sent. Takes at most
   // (writes + again + 32) * timeout_s, 24 of them on serial lines only, and another thread's request that is under way
-  // (response_timeout_s, or 6 of them while it falls in step on a serial line).
+  // (response_timeout_s; while it falls in step on a serial line it gives way at once).
   // again: what is written at the second chance, if it shall be split otherwise; empty: the same.
   bool write_urgently(const std::vector<ModbusWrite>& writes, double timeout_s,
                       const std::vector<ModbusWrite>& again = {}) noexcept;
@@ -66,7 +66,7 @@ class ModbusLink {
  private:
   using Request = std::function<WireAnswer(ModbusWire&, double timeout_s)>;
   WireAnswer attempt(const Request& request);
-  WireAnswer make_ready(double timeout_s);
+  WireAnswer make_ready(double timeout_s, const GiveWay& give_way = {});
   WireAnswer found_again(double timeout_s);
   void settle(const WireAnswer& answer);
   void exchange(const std::string& asked, const Request& request, std::stop_token stop);

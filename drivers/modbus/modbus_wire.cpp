@@ -113,20 +113,21 @@ WireAnswer ModbusWire::connect(double timeout_s) {
   return {};
 }
 
-WireAnswer ModbusWire::fall_in_step(double quiet_s) {
+WireAnswer ModbusWire::fall_in_step(double quiet_s, const GiveWay& give_way) {
   if (!context_->open) return {WireAnswer::Kind::Broken, "not connected"};
   if (!serial_) return {};
   const int line = modbus_get_socket(context_->modbus);
   const WireAnswer gone{WireAnswer::Kind::Broken, "the serial line is gone"};
-  const LineQuiet quiet = drain(line, quiet_s, 5.0 * quiet_s);
+  const LineQuiet quiet = drain(line, quiet_s, 5.0 * quiet_s, give_way);
   if (quiet == LineQuiet::Gone) return gone;
   if (quiet == LineQuiet::Babbling) return {WireAnswer::Kind::OutOfStep, "the serial line does not fall silent"};
-  const EchoAnswer echo = ask_for_echo(line, unit_id_, ++nonce_, quiet_s);
+  const EchoAnswer echo = ask_for_echo(line, unit_id_, ++nonce_, quiet_s, give_way);
   if (echo == EchoAnswer::Gone) return gone;
   if (echo == EchoAnswer::Echoed) {
     echoes_ = true;
     return {};
   }
+  if (echo == EchoAnswer::GaveWay) return {WireAnswer::Kind::OutOfStep, "gave way to something urgent"};
   if (echoes_) return {WireAnswer::Kind::OutOfStep, no_answer(quiet_s)};
   return {};
 }

@@ -9,6 +9,7 @@
 
 #include "drivers/modbus/modbus_words.h"
 #include "drivers/modbus/register_map.h"
+#include "drivers/modbus/serial_line_step.h"
 
 namespace lumitexel {
 
@@ -37,8 +38,9 @@ class ModbusWire {
   // Serial lines only, where a reply does not say which request it answers and a late one outlives the port's closing:
   // waits until the line has been silent for quiet_s and then has the controller echo a number made up for the
   // purpose (function 8), for what comes after that is not from before it. A controller that has never been seen to
-  // know function 8 is taken to be in step after two silences. At most 6 * quiet_s.
-  WireAnswer fall_in_step(double quiet_s);
+  // know function 8 is taken to be in step after two silences. At most 6 * quiet_s;
+  // OutOfStep as soon as give_way says so.
+  WireAnswer fall_in_step(double quiet_s, const GiveWay& give_way = {});
 
   // words.size() adjoining registers, or bits, in one request.
   WireAnswer read(RegisterTable table, int address, std::span<std::uint16_t> words, double timeout_s);

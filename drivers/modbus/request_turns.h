@@ -25,6 +25,12 @@ class RequestTurns {
     bool taken_;
   };
 
+  // For whoever has the turn and could hand it over early.
+  bool urgent_is_waiting() const {
+    const std::lock_guard lock(mutex_);
+    return urgent_waiting_ > 0;
+  }
+
  private:
   bool take(bool urgent, double patience_s) {
     std::unique_lock lock(mutex_);
@@ -45,7 +51,7 @@ class RequestTurns {
     free_.notify_all();
   }
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable free_;
   bool busy_ = false;
   int urgent_waiting_ = 0;

@@ -51,11 +51,12 @@ int milliseconds(double time_s) { return std::max(1, static_cast<int>(std::ceil(
 }  // namespace
 
 // The time that passed is counted in waits of at most kSlice_ms: generous where bytes keep coming, never endless.
-LineQuiet drain(int line_fd, double quiet_s, double longest_s) {
+LineQuiet drain(int line_fd, double quiet_s, double longest_s, const GiveWay& give_way) {
   constexpr int kSlice_ms = 5;
   std::array<std::uint8_t, 256> dropped{};
   int quiet_ms = 0;
   for (int waited_ms = 0; waited_ms < milliseconds(longest_s); waited_ms += kSlice_ms) {
+    if (give_way && give_way()) break;
     const int got = receive(line_fd, dropped, kSlice_ms);
     if (got < 0) return LineQuiet::Gone;
     quiet_ms = got > 0 ? 0 : quiet_ms + kSlice_ms;
@@ -64,7 +65,7 @@ LineQuiet drain(int line_fd, double quiet_s, double longest_s) {
   return LineQuiet::Babbling;
 }
 
-EchoAnswer ask_for_echo(int line_fd, int unit_id, std::uint16_t nonce, double timeout_s) {
+EchoAnswer ask_for_echo(int line_fd, int unit_id, std::uint16_t nonce, double timeout_s, const GiveWay& give_way) {
   const auto unit = static_cast<std::uint8_t>(unit_id);
   const auto high = static_cast<std::uint8_t>(nonce >> 8), low = static_cast<std::uint8_t>(nonce & 0xff);
   const std::vector<std::uint8_t> request = checked({unit, kDiagnostics, 0, 0, high, low});
@@ -75,6 +76,7 @@ EchoAnswer ask_for_echo(int line_fd, int unit_id, std::uint16_t nonce, double ti
   // Late replies may come before the echo; they are not looked at.
   constexpr int kSlice_ms = 5;
   for (int waited_ms = 0; waited_ms < milliseconds(timeout_s); waited_ms += kSlice_ms) {
+    if (give_way && give_way()) return EchoAnswer::GaveWay;
     const int got = receive(line_fd, part, kSlice_ms);
     if (got < 0) return EchoAnswer::Gone;
     answer.insert(answer.end(), part.begin(), part.begin() + got);

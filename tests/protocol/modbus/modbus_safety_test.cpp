@@ -93,6 +93,20 @@ TEST_P(Safety, DoesNotWaitForARequestThatHangs) {
   EXPECT_TRUE(is_safe(bench));
 }
 
+// A serial line that falls back in step after a lost reply does so for seconds with these times; it gives way at once.
+TEST_P(Safety, DoesNotWaitForALineThatIsGettingBackInStep) {
+  ModbusServerSettings settings = quick_settings(GetParam());
+  settings.endpoint.response_timeout_s = 0.6;
+  const ModbusBench bench(settings, 1.0);
+  const auto safety = bench.safety();
+  set_going(bench);
+  bench.faults->arm_one(Fault::Mute, 0);
+  std::jthread stuck([&] { bench.link->read(settings.axes.at(BenchAxis::Turntable).position, "turntable position"); });
+  bench.real_clock->sleep_until(bench.real_clock->now_s() + 0.75, {});  // now it waits for 0.6 s of silence
+  EXPECT_LT(seconds_of([&] { EXPECT_TRUE(safety->make_safe()); }), 0.3);
+  EXPECT_TRUE(is_safe(bench));
+}
+
 TEST_P(Safety, SaysNoInTimeIfNobodyAnswers) {
   ModbusBench bench(GetParam());
   const auto safety = bench.safety();

@@ -49,7 +49,7 @@ TEST(GphotoCamera, DeliversWhatTheBenchSaw) {
 TEST(GphotoCamera, RefusesWhatTheDialHasNot) {
   const auto server = serve(still_bench(), std::make_shared<NoFaults>());
   CameraLimits limits = still_rig().camera.limits;
-  limits.exposure_choices_s.push_back(0.5);
+  limits.exposure_choices_s.clear();  // a rig that does not say what the dial has
   GphotoCamera camera(connection_to(*server), limits, kClock, LUMITEXEL_GPHOTO_WORKER);
   try {
     camera.shoot({0.5, 0.0}, {});
@@ -59,6 +59,18 @@ TEST(GphotoCamera, RefusesWhatTheDialHasNot) {
     EXPECT_NE(std::string(error.what()).find(server->gphoto_port()), std::string::npos) << error.what();
   }
   EXPECT_EQ(objection_to(camera.shoot({0.004, 0.0}, {}, 5), {0.004, 0.0}, 5), "");
+}
+
+TEST(GphotoCamera, ARigThatPromisesWhatTheDialHasNotIsRefusedOnConnecting) {
+  const auto server = serve(still_bench(), std::make_shared<NoFaults>());
+  CameraLimits limits = still_rig().camera.limits;
+  limits.exposure_choices_s.push_back(0.5);
+  try {
+    GphotoCamera camera(connection_to(*server), limits, kClock, LUMITEXEL_GPHOTO_WORKER);
+    FAIL() << "connected";
+  } catch (const BadInput& error) {
+    EXPECT_NE(std::string(error.what()).find("camera.exposure_choices_s: 0.5 s"), std::string::npos) << error.what();
+  }
 }
 
 TEST(GphotoCamera, MakesFixedSettingsAndSaysWhichItCannot) {
