@@ -15,14 +15,18 @@ constexpr double kKicksPerWatchdogPeriod = 4.0;  // three may come late
 
 class ModbusSafetyChannel final : public SafetyChannel {
  public:
-  ModbusSafetyChannel(std::string name, ModbusSafety safety) : name_(std::move(name)), safety_(std::move(safety)) {}
+  // shared: the line is the devices' own, a serial one.
+  ModbusSafetyChannel(std::string name, ModbusSafety safety, bool shared)
+      : name_(std::move(name)), safety_(std::move(safety)), shared_(shared) {}
   std::string name() const override { return name_; }
   bool make_safe() noexcept override { return safety_.make_safe(); }
-  bool keep_alive() noexcept override { return safety_.kick_watchdog(); }
+  // On a shared line the devices' requests find a dead controller, with more patience than a keep-alive has.
+  bool keep_alive() noexcept override { return safety_.kick_watchdog() || shared_; }
 
  private:
   std::string name_;
   ModbusSafety safety_;
+  bool shared_;
 };
 
 using Links = std::map<std::string, std::shared_ptr<ModbusLink>>;
@@ -50,8 +54,9 @@ std::unique_ptr<SafetyLane> open_safety_lane(const HardwareDescription& hardware
     ModbusSafety safety(connect_for_safety(link, clock, stop),
                         {hardware.point_light, hardware.ring_flash, hardware.backlight},
                         {hardware.turntable, hardware.light_azimuth, hardware.light_elevation});
-    channels.push_back(std::make_unique<ModbusSafetyChannel>("controller " + name, std::move(safety)));
     const ModbusEndpoint& endpoint = link->endpoint();
+    channels.push_back(std::make_unique<ModbusSafetyChannel>("controller " + name, std::move(safety),
+                                                             endpoint.host.empty()));
     if (endpoint.watchdog) period_s = std::min(period_s, endpoint.watchdog_period_s / kKicksPerWatchdogPeriod);
   }
   return std::make_unique<SafetyLane>(std::move(channels),
