@@ -169,12 +169,16 @@ void find_clock(const AravisDevice& device, CameraSetup& setup) {
 void set_packet_size(const AravisDevice& device, int bytes) {
   if (!device.is_gige()) return;
   arv_camera_gv_set_packet_size_adjustment(device.camera(), ARV_GV_PACKET_SIZE_ADJUSTMENT_NEVER);
-  device.call("setting the packet size to " + std::to_string(bytes), arv_camera_gv_set_packet_size, bytes);
-  const auto now = device.call("reading the packet size", arv_camera_gv_get_packet_size);
-  if (static_cast<int>(now) != bytes) {
-    throw BadInput(device.name() + ": packet_size_bytes", std::to_string(bytes),
-                   "a size that the camera keeps; it reads back " + std::to_string(now));
+  // Twice before the rig's file is blamed: a camera that rebooted between writing and reading has forgotten the size, and
+  // us, which the second write finds out.
+  int now = 0;
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    device.call("setting the packet size to " + std::to_string(bytes), arv_camera_gv_set_packet_size, bytes);
+    now = static_cast<int>(device.call("reading the packet size", arv_camera_gv_get_packet_size));
+    if (now == bytes) return;
   }
+  throw BadInput(device.name() + ": packet_size_bytes", std::to_string(bytes),
+                 "a size that the camera keeps; it reads back " + std::to_string(now));
 }
 
 }  // namespace
