@@ -9,7 +9,6 @@ namespace lumitexel {
 namespace {
 
 constexpr std::chrono::milliseconds kAcknowledged{2000};
-constexpr const char* kNotSafe = "NOT SAFE:";
 
 std::string unsafe_text(const std::vector<std::string>& silent) {
   std::string text = kNotSafe;

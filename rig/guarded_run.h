@@ -10,6 +10,9 @@
 
 namespace lumitexel {
 
+// How every error begins that leaves a lamp or an axis unaccounted for.
+inline constexpr const char* kNotSafe = "NOT SAFE:";
+
 class GuardedRun {
  public:
   // stop: the caller's. Its stop trips the lane at once, from the thread that requests it; a trip of the lane stops the run.

@@ -14,26 +14,13 @@ struct RenderedPixels {
   SimulatedSensor sensor;
 };
 
-BenchBehaviour behaviour_of(const SimulationSettings& settings) {
-  BenchBehaviour behaviour;
-  behaviour.seed = settings.seed;
-  behaviour.lamp_settle_s = settings.lamp_settle_s;
-  behaviour.sensor_temperature_c = settings.sensor_temperature_c;
-  behaviour.state_strip = settings.state_strip;
-  behaviour.turntable_backlash_deg = settings.turntable_backlash_deg;
-  behaviour.turntable_swing_deg = settings.turntable_swing_deg;
-  behaviour.turntable_swing_decay_s = settings.turntable_swing_decay_s;
-  behaviour.turntable_swing_hz = settings.turntable_swing_hz;
-  return behaviour;
-}
-
 }  // namespace
 
 std::shared_ptr<SimulatedBench> make_rendered_bench(const RigDescription& rig, std::shared_ptr<SimulatedWorld> world,
                                                     std::shared_ptr<Clock> clock) {
   const auto pixels = std::make_shared<RenderedPixels>(world);
   return std::make_shared<SimulatedBench>(
-      rig, behaviour_of(world->settings), std::move(clock),
+      rig, world->settings, std::move(clock),
       [pixels](const WorldState& state, const CameraSettings& settings, std::uint64_t noise_key) {
         return pixels->sensor.expose(*pixels->renderer.render(state), settings, noise_key);
       });

@@ -14,6 +14,7 @@
 #include "drivers/clock.h"
 #include "drivers/motion.h"
 #include "rig/rig_description.h"
+#include "sim/bench_behaviour.h"
 #include "sim/world_state.h"
 
 namespace lumitexel {
@@ -30,17 +31,6 @@ const char* to_string(BenchLamp lamp);  // "point light", "ring flash", "backlig
 // May be slow; called from several threads.
 using PixelSource =
     std::function<std::vector<std::uint16_t>(const WorldState&, const CameraSettings&, std::uint64_t noise_key)>;
-
-// What a bench does that its description does not say.
-struct BenchBehaviour {
-  std::uint64_t seed = 1;
-  double lamp_settle_s = 0.1;
-  double sensor_temperature_c = 25.0;
-  bool state_strip = false;  // write sim/state_strip.h over the first pixels
-  // The turntable's mechanics beyond its encoder: slack between the two, and a swing that dies away after a stop.
-  double turntable_backlash_deg = 0.0;
-  double turntable_swing_deg = 0.0, turntable_swing_decay_s = 0.1, turntable_swing_hz = 8.0;
-};
 
 struct BenchMotion {
   double position = 0, target = 0;  // as the encoder says

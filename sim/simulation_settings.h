@@ -3,14 +3,14 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "sim/bench_behaviour.h"
+
 namespace lumitexel {
 
-struct SimulationSettings {
-  std::uint64_t seed = 1;
+struct SimulationSettings : BenchBehaviour {
   int samples_per_pixel = 4;  // a square number, on a regular grid
 
   // The object. "vase", or an OBJ or PLY file relative to the rig file's folder.
@@ -31,7 +31,6 @@ struct SimulationSettings {
   Eigen::Array3d backlight_w_per_m2_sr = Eigen::Array3d::Constant(2.0);
   double backlight_distance_m = 1.6;                     // from the camera, along its axis
   Eigen::Vector2d backlight_size_m{0.8, 0.6};
-  double lamp_settle_s = 0.1;
 
   // The spheres: GGX metal.
   Eigen::Vector3d first_sphere_in_rig_m = Eigen::Vector3d::Zero();  // its centre
@@ -43,16 +42,8 @@ struct SimulationSettings {
   double response_e_per_s_per_radiance = 2e5;  // radiance in W/(m^2 sr)
   double dark_current_e_per_s = 2.0;           // at 20 degrees Celsius
   double dark_current_doubling_k = 7.0;
-  double sensor_temperature_c = 25.0;
   double hot_pixel_fraction = 2e-4;
   double hot_pixel_current_e_per_s = 2000.0;  // mean, at 20 degrees Celsius
-
-  // The turntable's mechanics beyond its encoder: slack between the two, and a swing that dies away after every stop.
-  double turntable_backlash_deg = 0.0;
-  double turntable_swing_deg = 0.0, turntable_swing_decay_s = 0.1, turntable_swing_hz = 8.0;
-
-  // Writes the true state of every exposure over the frame's first pixels (sim/state_strip.h).
-  bool state_strip = false;
 };
 
 // toml: the table's text, with or without its [simulation] header. Throws BadInput naming `where` and the key.

@@ -23,7 +23,6 @@ ModbusSafety::ModbusSafety(std::shared_ptr<ModbusLink> link, const std::vector<M
   for (const ModbusAxisMap& axis : axes) {
     if (axis.controller != endpoint.name) continue;
     if (axis.stop) one_by_one_.push_back(prepared(*axis.stop));
-    else ++axes_without_stop_;
     any_register_ = axis.position;
   }
   together_ = joined(one_by_one_);

@@ -14,7 +14,8 @@ namespace lumitexel {
 // Thread-safe.
 class ModbusSafety {
  public:
-  // Lamps and axes of other controllers than `link`'s are left out, so that all of a rig's may be given.
+  // Lamps and axes of other controllers than `link`'s are left out, so that all of a rig's may be given; so are axes
+  // without a stop command, which no rig's file may have.
   // link: one of its own by TCP (connect_for_safety). A serial line has one master: there it must be the link that the
   // devices use, where make_safe() goes before everything but the request that is under way.
   // Throws OutOfRange for commands that their registers cannot hold.
@@ -32,14 +33,10 @@ class ModbusSafety {
   // called every watchdog_period_s / 3 or so by the thread whose death the watchdog is to notice. True if answered.
   bool kick_watchdog() noexcept;
 
-  // Axes that make_safe() cannot stop since their maps have no stop command; they come to rest where they were sent.
-  int axes_without_stop() const { return axes_without_stop_; }
-
  private:
   std::shared_ptr<ModbusLink> link_;
   std::vector<ModbusWrite> together_, one_by_one_, watchdog_;
   std::optional<ModbusRegister> any_register_;
-  int axes_without_stop_ = 0;
 };
 
 // A second connection to the device link's controller, or, on a serial line, that link itself. Throws as ModbusLink.

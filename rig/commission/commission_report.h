@@ -21,8 +21,8 @@ struct SensorFindings {
   Measured read_noise_dn;        // standard deviation of one read, quantisation taken out
   Measured electrons_per_dn;     // from the photon-transfer curve
   Measured read_noise_e;
-  Measured saturation_dn;        // where a full exposure ends; 0, as full_well_e, if none could be had
-  Measured full_well_e;
+  // Where a full exposure ends; both empty if none could be had.
+  std::optional<Measured> saturation_dn, full_well_e;
   Measured dark_current_e_per_s;  // median pixel
   double hot_pixel_share = 0;     // pixels whose dark current is over ten times the frame's noise
   double nonlinearity_percent = 0;  // largest deviation from signal = slope * exposure, between 5 and 80 % of saturation
@@ -42,15 +42,15 @@ struct TimingFindings {
 
 struct AxisFindings {
   std::string axis;
-  std::optional<Measured> backlash;         // in the axis's unit
-  std::optional<double> settle_s;           // from the encoder's arrival until the picture stands
+  Measured backlash;                        // in the axis's unit
+  double settle_s = 0;                      // from the encoder's arrival until the picture stands
   double repeatability = 0;                 // standard deviation of returning from the same side
   double resolution = 0;                    // what the pictures can tell apart: one sigma of a single look
   std::vector<CurvePoint> settling;         // s since arrival, displacement
 };
 
 struct CommissionReport {
-  SensorFindings sensor;
+  std::optional<SensorFindings> sensor;     // empty: the scene did not allow it
   TimingFindings timing;
   std::vector<AxisFindings> axes;
   std::vector<std::string> not_checked;     // one sentence each

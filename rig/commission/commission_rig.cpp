@@ -32,7 +32,7 @@ class Commissioning {
     attempt("settings latency", [&] { report_.timing = check_latency(bench_); });
     progress_.update(1);
     attempt("sensor", [&] { report_.sensor = check_sensor(bench_); });
-    if (report_.sensor.electrons_per_dn.value > 0.0 && report_.sensor.full_well_e.value == 0.0) {
+    if (report_.sensor && !report_.sensor->full_well_e) {
       report_.not_checked.push_back("the full well: no exposure of this camera saturates the picture under the point light");
     }
     progress_.update(2);

@@ -11,6 +11,8 @@ namespace lumitexel {
 
 using Samples = std::span<const std::uint16_t>;
 
+inline constexpr double kQuantisation_dn2 = 1.0 / 12.0;  // the variance that rounding to integers adds
+
 double mean_of(Samples samples);
 // The value below which `share` (0 to 1) of the samples lie.
 double quantile_of(Samples samples, double share);

@@ -42,22 +42,19 @@ std::string measured_rig_toml(const CommissionReport& report, const RigDescripti
   }
   put(out, "readout_s", {std::max(0.0, report.timing.frame_overhead_s.value), report.timing.frame_overhead_s.sigma},
       "trigger to frame, less the exposure");
-  const SensorFindings& sensor = report.sensor;
-  if (sensor.electrons_per_dn.value > 0.0) {
+  if (report.sensor) {
+    const SensorFindings& sensor = *report.sensor;
     put(out, "electrons_per_dn", sensor.electrons_per_dn, "photon transfer");
-    if (sensor.full_well_e.value > 0.0) put(out, "full_well_e", sensor.full_well_e, "");
+    if (sensor.full_well_e) put(out, "full_well_e", *sensor.full_well_e, "");
     put(out, "read_noise_e", sensor.read_noise_e, "");
     put(out, "black_level_dn", sensor.black_level_dn, "");
   }
   double arm_s = -1.0;
   for (const AxisFindings& axis : report.axes) {
-    if (axis.backlash) {
-      out << "# " << axis.axis << ": slack " << axis.backlash->value << " +- " << axis.backlash->sigma
-          << " deg; no key of a rig takes it: approach from one side where it matters\n";
-    }
-    if (!axis.settle_s) continue;
-    if (axis.axis == "turntable") put_settle(out, "turntable", *axis.settle_s, "the table");
-    else arm_s = std::max(arm_s, *axis.settle_s);
+    out << "# " << axis.axis << ": slack " << axis.backlash.value << " +- " << axis.backlash.sigma
+        << " deg; no key of a rig takes it: approach from one side where it matters\n";
+    if (axis.axis == "turntable") put_settle(out, "turntable", axis.settle_s, "the table");
+    else arm_s = std::max(arm_s, axis.settle_s);
   }
   if (arm_s >= 0.0) put_settle(out, "light_positioner", arm_s, "the slower of its two axes");
   return out.str();

@@ -13,7 +13,6 @@ constexpr double kLongRest_s = 3.0;
 // Settling is looked at so long after the encoder's arrival, one look per return.
 constexpr double kLooks_s[] = {0.0, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.7, 0.9, 1.2, 1.6};
 constexpr double kStill_sigmas = 4.0, kClear_sigmas = 5.0;
-constexpr double kQuantisation_dn2 = 1.0 / 12.0;
 
 class AxisCheck {
  public:
@@ -27,8 +26,8 @@ class AxisCheck {
     DisplacementGauge gauge = calibrated(found);
     check_backlash(gauge, found);
     // A second time by a step of the slack's own size: there the picture's change is what is looked for.
-    if (found.backlash->value > kClear_sigmas * found.backlash->sigma && found.backlash->value < 0.7 * step_) {
-      step_ = found.backlash->value;
+    if (found.backlash.value > kClear_sigmas * found.backlash.sigma && found.backlash.value < 0.7 * step_) {
+      step_ = found.backlash.value;
       gauge = calibrated(found);
       check_backlash(gauge, found);
     }
@@ -92,7 +91,7 @@ class AxisCheck {
     double mean = 0.0;
     for (const double difference : differences) mean += difference / kReturns;
     const double chance = std::max(deviation_of(differences), std::sqrt(2.0) * found.resolution) / std::sqrt(kReturns);
-    found.backlash = Measured{std::abs(mean), std::hypot(chance, kCurvature * mean)};
+    found.backlash = {std::abs(mean), std::hypot(chance, kCurvature * mean)};
     found.repeatability = deviation_of(from_below);
   }
 

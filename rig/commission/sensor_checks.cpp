@@ -6,7 +6,6 @@
 namespace lumitexel {
 namespace {
 
-constexpr double kQuantisation_dn2 = 1.0 / 12.0;
 constexpr double kLongDark_s = 2.0;
 constexpr int kLadder = 8;         // exposures, each half the next
 constexpr int kNoiseGroups = 24;
@@ -104,15 +103,13 @@ void check_ladder(TestBench& bench, double longest_s, SensorFindings& found) {
 void check_saturation(TestBench& bench, double longest_s, SensorFindings& found) {
   const double exposure_s = std::min(longest_s * 20.0, bench.devices().camera->limits().exposure_max_s);
   const Frame full = bench.settled_shot(exposure_s);
-  found.saturation_dn = {quantile_of(full.samples, 0.999), 0.0};
+  const double top = quantile_of(full.samples, 0.999);
   // The brightest hundredth of a saturated picture is one value and its noise; one that is not saturated goes on beyond.
-  const double spread = found.saturation_dn.value - quantile_of(full.samples, 0.99);
-  if (spread > kNoiseSpread * std::hypot(found.read_noise_dn.value, 1.0)) {
-    found.saturation_dn = {};
-    return;
-  }
-  const double depth = found.saturation_dn.value - found.black_level_dn.value;
-  found.full_well_e = {depth * found.electrons_per_dn.value, depth * found.electrons_per_dn.sigma};
+  const double spread = top - quantile_of(full.samples, 0.99);
+  if (spread > kNoiseSpread * std::hypot(found.read_noise_dn.value, 1.0)) return;
+  const double depth = top - found.black_level_dn.value;
+  found.saturation_dn = Measured{top, 0.0};
+  found.full_well_e = Measured{depth * found.electrons_per_dn.value, depth * found.electrons_per_dn.sigma};
 }
 
 }  // namespace

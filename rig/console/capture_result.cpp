@@ -4,6 +4,7 @@
 
 #include "drivers/error.h"
 #include "rig/console/duration_text.h"
+#include "rig/guarded_run.h"
 
 namespace lumitexel {
 
@@ -29,7 +30,7 @@ CommandResult capture_and_tell(SessionStore& session, RigDevices& devices, Comma
     throw;
   } catch (const Error& error) {
     const std::string text = error.what();
-    const std::string paused = text.starts_with("NOT SAFE") ? "" : "; lamps are off and axes halted";
+    const std::string paused = text.starts_with(kNotSafe) ? "" : "; lamps are off and axes halted";
     throw Error(text + paused + ". " + std::to_string(session.frames().size()) +
                 " frames are kept; mend the cause, then `lumitexel resume " + session.directory().string() + "`");
   }

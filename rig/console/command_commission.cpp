@@ -24,6 +24,14 @@ struct CommissionOptions {
 
 nlohmann::json json_of(const Measured& measured) { return {{"value", measured.value}, {"sigma", measured.sigma}}; }
 
+nlohmann::json json_of(const SensorFindings& sensor);
+
+// null for what was not measured.
+template <class Finding>
+nlohmann::json json_of(const std::optional<Finding>& finding) {
+  return finding ? json_of(*finding) : nlohmann::json(nullptr);
+}
+
 nlohmann::json json_of(const std::vector<CurvePoint>& curve) {
   nlohmann::json points = nlohmann::json::array();
   for (const CurvePoint& point : curve) points.push_back({point.x, point.y});
@@ -50,23 +58,19 @@ nlohmann::json json_of(const TimingFindings& timing) {
                       {"honest_late_frames", timing.honest_late_frames},
                       {"frame_overhead_s", json_of(timing.frame_overhead_s)},
                       {"slowest_overhead_s", timing.slowest_overhead_s},
-                      {"clock_drift_ppm", nullptr},
+                      {"clock_drift_ppm", json_of(timing.clock_drift_ppm)},
                       {"clock_jitter_s", timing.clock_jitter_s}};
   if (timing.settings_latency_frames) json["settings_latency_frames"] = *timing.settings_latency_frames;
-  if (timing.clock_drift_ppm) json["clock_drift_ppm"] = json_of(*timing.clock_drift_ppm);
   return json;
 }
 
 nlohmann::json json_of(const AxisFindings& axis) {
-  nlohmann::json json{{"axis", axis.axis},
-                      {"backlash_deg", nullptr},
-                      {"settle_s", nullptr},
-                      {"repeatability_deg", axis.repeatability},
-                      {"resolution_deg", axis.resolution},
-                      {"settling", json_of(axis.settling)}};
-  if (axis.backlash) json["backlash_deg"] = json_of(*axis.backlash);
-  if (axis.settle_s) json["settle_s"] = *axis.settle_s;
-  return json;
+  return {{"axis", axis.axis},
+          {"backlash_deg", json_of(axis.backlash)},
+          {"settle_s", axis.settle_s},
+          {"repeatability_deg", axis.repeatability},
+          {"resolution_deg", axis.resolution},
+          {"settling", json_of(axis.settling)}};
 }
 
 void line(std::ostream& out, const char* what, const Measured& measured, const char* unit, double described) {
@@ -74,21 +78,23 @@ void line(std::ostream& out, const char* what, const Measured& measured, const c
       << ")\n";
 }
 
-std::string text_of(const CommissionReport& report, const RigDescription& rig) {
-  std::ostringstream out;
-  out.precision(4);
-  const SensorFindings& sensor = report.sensor;
-  const SensorDescription& described = rig.camera.sensor;
+void put_sensor(std::ostream& out, const SensorFindings& sensor, const SensorDescription& described) {
   out << "camera\n";
   line(out, "black level", sensor.black_level_dn, "DN", described.black_level_dn);
   line(out, "gain", sensor.electrons_per_dn, "e/DN", described.electrons_per_dn);
   line(out, "read noise", sensor.read_noise_e, "e", described.read_noise_e);
-  line(out, "full well", sensor.full_well_e, "e", described.full_well_e);
+  if (sensor.full_well_e) line(out, "full well", *sensor.full_well_e, "e", described.full_well_e);
   out << "  dark current: " << sensor.dark_current_e_per_s.value << " +- " << sensor.dark_current_e_per_s.sigma
       << " e/s; hot pixels: " << 100.0 * sensor.hot_pixel_share << " %\n"
       << "  non-linearity: " << sensor.nonlinearity_percent << " % of the signal at most\n"
-      << "  point light, frame to frame: " << sensor.lamp_instability_percent << " %\n"
-      << "timing\n";
+      << "  point light, frame to frame: " << sensor.lamp_instability_percent << " %\n";
+}
+
+std::string text_of(const CommissionReport& report, const RigDescription& rig) {
+  std::ostringstream out;
+  out.precision(4);
+  if (report.sensor) put_sensor(out, *report.sensor, rig.camera.sensor);
+  out << "timing\n";
   if (report.timing.settings_latency_frames) {
     out << "  settings land " << *report.timing.settings_latency_frames << " frames late, "
         << report.timing.honest_late_frames << " of them say so\n";
@@ -101,9 +107,9 @@ std::string text_of(const CommissionReport& report, const RigDescription& rig) {
         << " ppm against this machine's, jitter " << report.timing.clock_jitter_s << " s\n";
   }
   for (const AxisFindings& axis : report.axes) {
-    out << axis.axis << "\n  backlash " << axis.backlash->value << " +- " << axis.backlash->sigma
+    out << axis.axis << "\n  backlash " << axis.backlash.value << " +- " << axis.backlash.sigma
         << " deg; returns to " << axis.repeatability << " deg; one picture tells " << axis.resolution
-        << " deg apart\n  stands " << *axis.settle_s << " s after its encoder says so\n";
+        << " deg apart\n  stands " << axis.settle_s << " s after its encoder says so\n";
   }
   out << "not checked\n";
   for (const std::string& what : report.not_checked) out << "  " << what << '\n';

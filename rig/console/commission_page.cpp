@@ -61,15 +61,16 @@ std::vector<std::string> row(const std::string& name, const Measured& measured, 
 }
 
 std::string sensor_section(const CommissionReport& report, const RigDescription& rig) {
-  const SensorFindings& sensor = report.sensor;
-  if (!(sensor.electrons_per_dn.value > 0.0)) return "";
+  if (!report.sensor) return "";
+  const SensorFindings& sensor = *report.sensor;
   const SensorDescription& described = rig.camera.sensor;
-  std::string body = html::table({"", "measured", "one sigma", "described"},
-                                 {row("black level, DN", sensor.black_level_dn, html::number(described.black_level_dn, 5)),
-                                  row("gain, e/DN", sensor.electrons_per_dn, html::number(described.electrons_per_dn, 5)),
-                                  row("read noise, e", sensor.read_noise_e, html::number(described.read_noise_e, 5)),
-                                  row("full well, e", sensor.full_well_e, html::number(described.full_well_e, 5)),
-                                  row("dark current, e/s", sensor.dark_current_e_per_s, "–")});
+  std::vector<std::vector<std::string>> rows{
+      row("black level, DN", sensor.black_level_dn, html::number(described.black_level_dn, 5)),
+      row("gain, e/DN", sensor.electrons_per_dn, html::number(described.electrons_per_dn, 5)),
+      row("read noise, e", sensor.read_noise_e, html::number(described.read_noise_e, 5)),
+      row("dark current, e/s", sensor.dark_current_e_per_s, "–")};
+  if (sensor.full_well_e) rows.push_back(row("full well, e", *sensor.full_well_e, html::number(described.full_well_e, 5)));
+  std::string body = html::table({"", "measured", "one sigma", "described"}, rows);
   const double slope = 1.0 / sensor.electrons_per_dn.value;
   const double read_variance = sensor.read_noise_dn.value * sensor.read_noise_dn.value;
   body += "<div class=\"row\">" +
@@ -87,9 +88,9 @@ std::string latency_text(const TimingFindings& timing) {
 
 std::string axis_section(const AxisFindings& axis) {
   const std::string text =
-      "Slack " + html::number(axis.backlash->value) + " ± " + html::number(axis.backlash->sigma, 2) +
+      "Slack " + html::number(axis.backlash.value) + " ± " + html::number(axis.backlash.sigma, 2) +
       "°; returns from one side to within " + html::number(axis.repeatability, 2) + "°; one picture tells " +
-      html::number(axis.resolution, 2) + "° apart. Stands " + html::number(*axis.settle_s) +
+      html::number(axis.resolution, 2) + "° apart. Stands " + html::number(axis.settle_s) +
       " s after its encoder says that it has arrived.";
   return html::section(axis.axis, text,
                        "<div class=\"row\">" +

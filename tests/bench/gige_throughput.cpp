@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "drivers/aravis/aravis_camera.h"
-#include "sim/hastened_clock.h"
+#include "tests/protocol/hastened_clock.h"
 #include "sim/protocol/gige/gige_camera_server.h"
 #include "sim/protocol/gige/gvsp_stream.h"
 #include "sim/protocol/gige/pixel_packing.h"

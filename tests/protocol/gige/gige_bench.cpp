@@ -6,7 +6,7 @@
 #include <atomic>
 
 #include "drivers/error.h"
-#include "sim/hastened_clock.h"
+#include "tests/protocol/hastened_clock.h"
 #include "sim/seeded_random.h"
 
 namespace lumitexel {

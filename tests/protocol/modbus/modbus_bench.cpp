@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/error.h"
-#include "sim/hastened_clock.h"
+#include "tests/protocol/hastened_clock.h"
 #include "tests/unit/small_rig.h"
 
 namespace lumitexel {

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "drivers/gphoto/camera_raw.h"
-#include "sim/hastened_clock.h"
+#include "tests/protocol/hastened_clock.h"
 #include "sim/seeded_random.h"
 #include "sim/state_strip.h"
 

@@ -11,16 +11,12 @@ constexpr int kTrips = 20;
 
 TEST(SafetyTrip, ArrivesWhileTheWriterHangs) {
   FrozenCapture capture;
-  int arm_in_time = 0;
   for (int i = 0; i < kTrips; ++i) {
     const TripLatency latency = capture.trip();
     EXPECT_LT(latency.table_ms, kGenerous_ms);
-    if (latency.arm_ms >= kGenerous_ms) continue;
-    ++arm_in_time;
+    EXPECT_LT(latency.arm_ms, kGenerous_ms);
     EXPECT_TRUE(capture.is_at_rest());
   }
-  // A pseudo-terminal's bytes are moved by a worker of the kernel's that a loaded machine can leave waiting.
-  EXPECT_GE(arm_in_time, kTrips / 2);
 }
 
 }  // namespace

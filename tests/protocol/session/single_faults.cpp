@@ -115,12 +115,7 @@ std::vector<SingleFaultOutcome> suffer_all(const std::vector<SingleFault>& all, 
   std::vector<std::jthread> workers;
   for (int i = 0; i < threads; ++i) {
     workers.emplace_back([&] {
-      for (std::size_t mine = next++; mine < all.size(); mine = next++) {
-        outcomes[mine] = suffer(all[mine]);
-        // The kernel moves a pseudo-terminal's bytes by a worker thread that may get no processor for seconds: then the
-        // controller on the serial line really is silent, and rightly said to be. What a fault does, it does again.
-        if (outcomes[mine].objection.starts_with(kNotSafe)) outcomes[mine] = suffer(all[mine]);
-      }
+      for (std::size_t mine = next++; mine < all.size(); mine = next++) outcomes[mine] = suffer(all[mine]);
     });
   }
   workers.clear();
