@@ -63,9 +63,10 @@ std::string GuardedRun::abandon(const std::string& what) {
   const std::vector<std::string> silent = lane.wait_until_safe(kAcknowledged);
   // A controller that does not answer the lane would not answer here either, and take its time over it.
   if (silent.empty()) force_dark_and_still();
+  // finish() trips the lane itself, so the lane's cause would hide which controller did not acknowledge it.
+  if (what.starts_with(kNotSafe)) return what;
   const std::string cause = tripped_by.empty() ? what : "paused safely: " + tripped_by;
-  if (silent.empty()) return cause;
-  return what.starts_with(kNotSafe) ? what : unsafe_text(silent) + ". Cause: " + cause;
+  return silent.empty() ? cause : unsafe_text(silent) + ". Cause: " + cause;
 }
 
 void GuardedRun::rethrow_or_explain(const std::string& cause) const {
