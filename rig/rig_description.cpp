@@ -181,6 +181,11 @@ GrayCardDescription read_gray_card(const TomlTable& table) {
 
 }  // namespace
 
+std::array<Eigen::Vector3d, 4> TagDescription::corners() const {
+  const Eigen::Vector3d right = 0.5 * size_m * up.cross(normal), top = 0.5 * size_m * up;
+  return {centre - right - top, centre + right - top, centre + right + top, centre - right + top};
+}
+
 Eigen::Isometry3d TurntableDescription::rig_from_table(double angle_deg) const {
   return Eigen::Translation3d(axis_point_in_rig) * Eigen::AngleAxisd(radians(angle_deg), axis_direction_in_rig) *
          Eigen::Translation3d(-axis_point_in_rig);

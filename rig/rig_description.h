@@ -6,7 +6,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -70,6 +72,30 @@ struct GrayCardDescription {
   Eigen::Vector3d up_in_rig = Eigen::Vector3d::UnitZ();  // an edge's direction
 };
 
+// An AprilTag of the family tag36h11 that stands still in the rig or turns with the table.
+struct TagDescription {
+  int id = 0;
+  double size_m = 0;      // edge of the square where the black border meets the white margin
+  bool on_table = false;  // what follows is given in `table`; else in `rig`
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, out of the printed side
+  Eigen::Vector3d up = Eigen::Vector3d::UnitY();      // unit, normal to `normal`: towards the tag's upper edge as printed
+  // The square's corners in the given frame: lower left, lower right, upper right, upper left, as printed.
+  std::array<Eigen::Vector3d, 4> corners() const;
+};
+
+// A flat board to be photographed in many places for the lens. Its frame: origin at the pattern's centre, x along the
+// columns to the right, y up along the rows, z out of the printed side.
+struct BoardDescription {
+  enum class Pattern { Checkerboard, TagGrid };
+  Pattern pattern = Pattern::Checkerboard;
+  int columns = 0, rows = 0;  // inner corners of a checkerboard; tags of a grid
+  double pitch_m = 0;         // a square's edge; from a tag's centre to the next one's
+  double tag_size_m = 0;      // TagDescription::size_m of the grid's tags
+  int first_tag_id = 0;       // lower left; then along the row to the right, then the row above
+  double albedo = 0;          // of the white parts
+};
+
 struct RingFlashDescription { double radius_m = 0; };  // a ring around the lens, in the camera's xy plane
 
 struct RigDescription {
@@ -81,6 +107,8 @@ struct RigDescription {
   RingFlashDescription ring_flash;
   SphereLineDescription spheres;
   GrayCardDescription gray_card;
+  std::vector<TagDescription> tags;       // [[tags]]; may be empty
+  std::optional<BoardDescription> board;  // [board]
   // The [simulation] table as TOML text, untouched: only the simulated world understands it. Empty if absent.
   std::string simulation_toml;
   // Likewise [hardware]: how the devices are connected (rig/hardware_description.h).

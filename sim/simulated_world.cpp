@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "processing/calibration/rig_camera.h"
+#include "processing/calibration/lens/rig_camera.h"
 #include "sim/loaded_object.h"
 #include "sim/procedural_object.h"
 #include "sim/simulated_rig.h"

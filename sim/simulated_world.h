@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "processing/calibration/camera_model.h"
+#include "processing/calibration/lens/camera_model.h"
 #include "processing/surface/mesh.h"
 #include "processing/surface/ray_scene.h"
 #include "rig/rig_description.h"

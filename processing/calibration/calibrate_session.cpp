@@ -1,7 +1,7 @@
 #include "processing/calibration/calibrated_session.h"
 #include "processing/calibration/calibration_summary.h"
 #include "processing/calibration/captured_views.h"
-#include "processing/calibration/imported_views.h"
+#include "processing/calibration/import/imported_views.h"
 
 namespace lumitexel {
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "processing/calibration/camera_model.h"
+#include "processing/calibration/lens/camera_model.h"
 #include "processing/image/radiance_image.h"
 #include "processing/surface/mesh.h"
 #include "rig/progress.h"

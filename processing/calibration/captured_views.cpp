@@ -7,13 +7,13 @@
 #include <cmath>
 
 #include "drivers/error.h"
-#include "processing/calibration/arm_alignment.h"
+#include "processing/calibration/light/arm_alignment.h"
 #include "processing/calibration/calibrated_views_file.h"
 #include "processing/calibration/captured_frames.h"
-#include "processing/calibration/gray_card.h"
-#include "processing/calibration/object_mask.h"
-#include "processing/calibration/rig_camera.h"
-#include "processing/calibration/sphere_shots.h"
+#include "processing/calibration/light/gray_card.h"
+#include "processing/calibration/pose/object_mask.h"
+#include "processing/calibration/lens/rig_camera.h"
+#include "processing/calibration/light/sphere_shots.h"
 #include "processing/image/demosaic.h"
 #include "processing/image/hdr_merge.h"
 #include "processing/surface/mesh_file.h"

@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "drivers/error.h"
-#include "processing/calibration/import_layout.h"
-#include "processing/calibration/rig_camera.h"
+#include "processing/calibration/import/import_layout.h"
+#include "processing/calibration/lens/rig_camera.h"
 #include "processing/surface/mesh_file.h"
 #include "rig/rig_file.h"
 #include "rig/schedule.h"

@@ -1,6 +1,6 @@
 #include <memory>
 
-#include "processing/calibration/import_session.h"
+#include "processing/calibration/import/import_session.h"
 #include "rig/console/command.h"
 
 namespace lumitexel {

@@ -1,6 +1,6 @@
 #include <memory>
 
-#include "processing/calibration/reduced_import.h"
+#include "processing/calibration/import/reduced_import.h"
 #include "rig/console/command.h"
 #include "rig/console/replay_result.h"
 #include "rig/replay_session.h"

@@ -1,4 +1,4 @@
-#include "processing/calibration/arm_alignment.h"
+#include "processing/calibration/light/arm_alignment.h"
 
 #include <gtest/gtest.h>
 

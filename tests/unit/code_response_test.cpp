@@ -1,4 +1,4 @@
-#include "processing/calibration/code_response.h"
+#include "processing/calibration/import/code_response.h"
 
 #include <gtest/gtest.h>
 

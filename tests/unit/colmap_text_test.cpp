@@ -1,4 +1,4 @@
-#include "processing/calibration/colmap_text.h"
+#include "processing/calibration/import/colmap_text.h"
 
 #include <gtest/gtest.h>
 

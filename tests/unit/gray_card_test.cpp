@@ -1,4 +1,4 @@
-#include "processing/calibration/gray_card.h"
+#include "processing/calibration/light/gray_card.h"
 
 #include <gtest/gtest.h>
 

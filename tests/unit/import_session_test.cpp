@@ -1,4 +1,4 @@
-#include "processing/calibration/import_session.h"
+#include "processing/calibration/import/import_session.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <ostream>
 #include <sstream>
 
-#include "processing/calibration/import_layout.h"
-#include "processing/calibration/imported_views.h"
+#include "processing/calibration/import/import_layout.h"
+#include "processing/calibration/import/imported_views.h"
 #include "rig/session_store.h"
 #include "tests/unit/bad_input_matcher.h"
 #include "tests/unit/shared_data.h"

@@ -1,4 +1,4 @@
-#include "processing/calibration/light_position.h"
+#include "processing/calibration/light/light_position.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "processing/calibration/lights_csv.h"
+#include "processing/calibration/import/lights_csv.h"
 
 #include <gtest/gtest.h>
 

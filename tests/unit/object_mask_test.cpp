@@ -1,4 +1,4 @@
-#include "processing/calibration/object_mask.h"
+#include "processing/calibration/pose/object_mask.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "processing/calibration/reduced_import.h"
+#include "processing/calibration/import/reduced_import.h"
 
 #include <gtest/gtest.h>
 

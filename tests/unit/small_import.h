@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "processing/calibration/import_session.h"
+#include "processing/calibration/import/import_session.h"
 #include "processing/image/exr_file.h"
 #include "processing/image/raster_file.h"
 #include "rig/whole_file.h"

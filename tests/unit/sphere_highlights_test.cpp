@@ -1,4 +1,4 @@
-#include "processing/calibration/sphere_highlights.h"
+#include "processing/calibration/light/sphere_highlights.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,56 @@
+// The centre of one highlight, to a small part of a pixel.
+//
+// A highlight on a sphere is a few pixels wide, and a mosaic samples it at a quarter (red, blue) or half (green) of
+// them, so a centroid would follow the mosaic. Instead a peak of elliptical shape, averaged over each pixel's area,
+//   balance[c] * (background + amplitude * w(p) * (1 + |L t(p)|^2 / b)^-b)
+// (from b = 2, a rough GGX mirror's, to b = 16, nearly a Gaussian; b is fitted too; L lower triangular), is fitted by
+// weighted least squares. Saturated and defective pixels are left out, so a clipped core is found by its flanks.
+//
+// In the picture's plane t(p) = p - centre and w = 1. On a known sphere the peak is symmetric about the normal n0 that
+// mirrors the light, not about its pixel: t(p) is then the normal at p across n0, times the sphere's radius in pixels,
+// and w(p) = 1 / cos(normal, view) as in every microfacet model. Ignoring this moves a centre by about a thousandth of
+// its distance from the sphere's, always inwards, which over six spheres adds up to millimetres of the light's
+// distance. It holds for spheres whose roughness, not the lens's blur, makes the width.
+//
+// Several emitters whose reflections run into one (a ring flash) are fitted as that many equal peaks at known offsets.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "processing/calibration/lens/camera_model.h"
+#include "processing/calibration/light/sphere_reflection.h"
+#include "processing/image/hdr_merge.h"
+
+namespace lumitexel {
+
+using ColourBalance = std::array<double, 3>;  // a lamp's response per mosaic colour, relative to green (mono: unused)
+
+struct FittedHighlight {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  double sigma_px = 0;   // per axis, from the fit's covariance scaled by its residuals
+  double amplitude = 0;  // of green or mono, in the image's unit
+  ColourBalance balance{1, 1, 1};
+  double width_px = 0;  // 1 / sqrt(det L): a scale radius
+};
+
+struct SphereInView {
+  CameraModel camera;
+  MirrorSphere sphere;  // in the camera's frame
+};
+
+struct HighlightShape {
+  std::optional<SphereInView> sphere;  // symmetric on this sphere; none: in the picture's plane
+  std::vector<Eigen::Vector2d>
+      offsets_px{};  // of equal peaks about their common centre, in the picture's plane; none: one peak
+};
+
+// Fits within `reach_px` around `start`. Without a balance the three amplitudes are free (mosaics only). None if too
+// few usable pixels are there, the fit does not converge, or it ends outside the window or wider than it.
+std::optional<FittedHighlight> fit_highlight(const MosaicRadiance& image, const Eigen::Vector2d& start, int reach_px,
+                                             const std::optional<ColourBalance>& balance,
+                                             const HighlightShape& shape = {});
+
+}  // namespace lumitexel
