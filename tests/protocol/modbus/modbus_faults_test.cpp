@@ -140,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(In, LastingFault,
 // same devices work again.
 TEST_P(LastingFault, IsAnErrorThatNamesTheController) {
   ModbusServerSettings settings = settings_for(GetParam());
-  settings.endpoint.give_up_s = 0.06;
+  settings.endpoint.give_up_s = 0.2;  // a busy machine stands still for 60 ms now and then
   // Exceptions come at once; a busy machine's own delay must not be the last thing that happens.
   if (std::get<2>(GetParam()) == Fault::Exception) settings.endpoint.response_timeout_s = 0.1;
   const ModbusBench bench(settings);
