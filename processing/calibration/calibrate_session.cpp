@@ -5,7 +5,8 @@
 
 namespace lumitexel {
 
-CalibratedSession calibrate_session(const SessionStore& session, Progress& progress, CalibrationSummary* summary) {
+CalibratedSession calibrate_session(const SessionStore& session, Progress& progress, CalibrationSummary* summary,
+                                    const CalibrationOptions& options) {
   if (session.kind() == SessionKind::Imported) {
     CalibratedSession calibrated = calibrate_imported(session, progress);
     if (summary) {
@@ -19,7 +20,7 @@ CalibratedSession calibrate_session(const SessionStore& session, Progress& progr
     }
     return calibrated;
   }
-  auto [calibrated, measured] = calibrate_captured(session, progress);
+  auto [calibrated, measured] = calibrate_captured(session, progress, options);
   if (summary) *summary = std::move(measured);
   return calibrated;
 }

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "processing/calibration/calibration_options.h"
 #include "processing/calibration/lens/camera_model.h"
 #include "processing/image/radiance_image.h"
 #include "processing/surface/mesh.h"
@@ -57,6 +58,6 @@ struct CalibratedSession {
 // sessions) and caches it under derived/calibrated/<key>. Fills *summary if there is one. Throws BadInput, Corrupt or
 // Error.
 CalibratedSession calibrate_session(const SessionStore& session, Progress& progress,
-                                    CalibrationSummary* summary = nullptr);
+                                    CalibrationSummary* summary = nullptr, const CalibrationOptions& options = {});
 
 }  // namespace lumitexel

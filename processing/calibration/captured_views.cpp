@@ -128,9 +128,10 @@ std::pair<CalibratedSession, CalibrationSummary> measure(const SessionStore& ses
 
 }  // namespace
 
-std::pair<CalibratedSession, CalibrationSummary> calibrate_captured(const SessionStore& session, Progress& progress) {
+std::pair<CalibratedSession, CalibrationSummary> calibrate_captured(const SessionStore& session, Progress& progress,
+                                                                       const CalibrationOptions& options) {
   CapturedInputs in = read_captured_inputs(session);
-  const std::string key = sha256_hex(session.content_sha256() + kMethod);
+  const std::string key = sha256_hex(session.content_sha256() + kMethod + options.key());
   const std::filesystem::path directory = session.derived_directory() / "calibrated" / key;
   auto result = read_calibrated_views(directory);
   if (!result) {

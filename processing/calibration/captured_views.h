@@ -17,6 +17,7 @@ namespace lumitexel {
 // Radiance is in DN per second. A view whose spheres tell nothing gets its light from the aligned arm (see the
 // summary). Throws BadInput for an unfinished or unusable session, Corrupt for changed files, Error if no spheres are
 // found.
-std::pair<CalibratedSession, CalibrationSummary> calibrate_captured(const SessionStore& session, Progress& progress);
+std::pair<CalibratedSession, CalibrationSummary> calibrate_captured(const SessionStore& session, Progress& progress,
+                                                                       const CalibrationOptions& options = {});
 
 }  // namespace lumitexel
