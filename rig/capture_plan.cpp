@@ -11,7 +11,8 @@ namespace {
 const NumberRange kTurn = NumberRange::between(-3600.0, 3600.0);
 const NumberRange kAzimuth = NumberRange::between(-180.0, 180.0);
 const NumberRange kElevation = NumberRange::between(-90.0, 90.0);
-constexpr int kMostDarks = 1000;
+constexpr int kMostDarks = 1000, kMostFlatFields = 1000;
+constexpr int kMostPlacements = 200;
 
 bool is_file_stem(const std::string& name) {
   constexpr const char* kAllowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
@@ -64,21 +65,59 @@ std::vector<PlannedView> read_views(const TomlTable& table) {
   return views;
 }
 
-}  // namespace
+void read_lamp_pattern(const TomlTable& table, LensPlan& lens) {
+  if (lens.board_placements == 0) table.reject("lamp_pattern_s", "given without board_placements", "a board to shine at");
+  lens.lamp_pattern_exposures_s = read_bracket(table, "lamp_pattern_s");
+  lens.light_azimuth_deg = table.number("light_azimuth_deg", kAzimuth);
+  lens.light_elevation_deg = table.number("light_elevation_deg", kElevation);
+}
 
-CapturePlan parse_plan(const std::string& toml_text, const std::string& where) {
-  const TomlTable table = TomlTable::parse(toml_text, where);
-  CapturePlan plan;
-  plan.name = table.string("name");
+LensPlan read_lens(const TomlTable& table) {
+  LensPlan lens;
+  if (table.has("board_s") || table.has("board_placements")) {
+    lens.board_exposure_s = table.number("board_s", NumberRange::positive());
+    lens.board_placements = table.integer("board_placements", 1, kMostPlacements);
+  }
+  if (table.has("flat_field_s") || table.has("flat_field_frames")) {
+    lens.flat_field_exposures_s = read_bracket(table, "flat_field_s");
+    lens.flat_field_frames = table.integer("flat_field_frames", 1, kMostFlatFields);
+  }
+  if (table.has("lamp_pattern_s")) read_lamp_pattern(table, lens);
+  table.reject_unread();
+  return lens;
+}
+
+// What only plans with views have; without them it would say something that nobody does.
+void read_views_and_exposures(const TomlTable& table, CapturePlan& plan) {
   plan.mesh = table.string("mesh");
-  plan.gain_db = table.number("gain_db", NumberRange::finite());
-  plan.darks_per_exposure = table.integer("darks_per_exposure", 1, kMostDarks);
   read_exposures(table.table("exposures"), plan);
   const TomlTable card = table.table("gray_card");
   plan.gray_card_light_azimuth_deg = card.number("light_azimuth_deg", kAzimuth);
   plan.gray_card_light_elevation_deg = card.number("light_elevation_deg", kElevation);
   card.reject_unread();
   plan.views = read_views(table);
+}
+
+void reject_without_views(const TomlTable& table) {
+  for (const char* key : {"mesh", "exposures", "gray_card"}) {
+    if (table.has(key)) table.reject(key, "given in a plan without views", "views as well, or [lens] alone");
+  }
+}
+
+}  // namespace
+
+CapturePlan parse_plan(const std::string& toml_text, const std::string& where) {
+  const TomlTable table = TomlTable::parse(toml_text, where);
+  CapturePlan plan;
+  plan.name = table.string("name");
+  plan.gain_db = table.number("gain_db", NumberRange::finite());
+  plan.darks_per_exposure = table.integer("darks_per_exposure", 1, kMostDarks);
+  if (table.has("lens")) plan.lens = read_lens(table.table("lens"));
+  if (table.has("views") || !plan.lens) {
+    read_views_and_exposures(table, plan);
+  } else {
+    reject_without_views(table);
+  }
   table.reject_unread();
   return plan;
 }

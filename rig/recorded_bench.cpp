@@ -118,6 +118,7 @@ Frame RecordedBench::repeat_discard(const DiscardRecord& discard, std::uint64_t 
 bool RecordedBench::taken_so(const RecordedShoot& shoot, const CameraSettings& settings) const {
   const CameraSettings applied = shoot.frame ? shoot.frame->applied : shoot.discards.front().asked;
   if (!same_settings(settings, applied) || lamps_ != lighting_of(shoot.shot.kind)) return false;
+  if (placed_ != prop_for(shoot.shot)) return false;
   const std::array<double, 3> positions = positions_of(shoot.shot);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     // An axis that stands where it is wanted, by its own reading, is not sent there again.
@@ -146,7 +147,7 @@ void RecordedBench::fail_finding(const CameraSettings& settings, std::uint64_t f
        << settings.gain_db << " dB, turntable " << sent_[0] << " deg, light azimuth " << sent_[1]
        << " deg, light elevation " << sent_[2] << " deg, lit " << (lamps_.point ? "point light" : "")
        << (lamps_.ring ? "ring flash" : "") << (lamps_.back ? "backlight" : "")
-       << (lamps_ == Lighting{} ? "nothing" : "")
+       << (lamps_ == Lighting{} ? "nothing" : "") << ", on the stage " << to_string(placed_)
        << "; the recording has no (more) frame taken so. Ask for shots of the recorded plan only";
   throw OutOfRange(text.str());
 }

@@ -13,6 +13,7 @@
 #include "rig/recorded_clock.h"
 #include "rig/recording.h"
 #include "rig/rig_description.h"
+#include "rig/stage_hand.h"
 
 namespace lumitexel {
 
@@ -33,8 +34,9 @@ class RecordedBench {
   // Where it was sent; once a frame has been delivered, what was read back for that frame.
   double reading(RecordedAxis axis) const { return reading_[static_cast<std::size_t>(axis)]; }
   Lighting& lamps() { return lamps_; }
+  void place(const Prop& prop) { placed_ = prop; }
 
-  // What the camera delivered next for these settings, with the axes and lamps as they are; of several shots that were
+  // What the camera delivered next for these settings, with axes, lamps and stage as they are; of several shots that were
   // taken so the one with the id `frame_key`, else the first not yet played. Sets the clock to the recorded time.
   //   a recorded frame           it; throws Corrupt if it is not what was committed
   //   a frame that was discarded for its settings or its name: a black one that says the same of itself
@@ -61,6 +63,7 @@ class RecordedBench {
   std::array<AxisLimits, 3> limits_;
   std::array<double, 3> sent_{}, reading_{};
   Lighting lamps_;
+  Prop placed_;
   std::uint64_t delivered_ = 0;
   double last_device_time_s_ = -std::numeric_limits<double>::infinity();  // since the camera was connected
 };

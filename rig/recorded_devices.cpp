@@ -61,6 +61,15 @@ class RecordedCamera final : public Camera {
   CameraSettings armed_;
 };
 
+class RecordedStage final : public StageHand {
+ public:
+  explicit RecordedStage(Bench bench) : bench_(std::move(bench)) {}
+  void place(const Prop& prop, std::stop_token) override { bench_->place(prop); }
+
+ private:
+  Bench bench_;
+};
+
 }  // namespace
 
 RigDevices make_recorded_devices(std::shared_ptr<const SessionStore> recording, RecordedRun run) {
@@ -80,6 +89,7 @@ RigDevices make_recorded_devices(std::shared_ptr<const SessionStore> recording, 
   devices.point_light = lamp("recorded point light", &Lighting::point);
   devices.ring_flash = lamp("recorded ring flash", &Lighting::ring);
   devices.backlight = lamp("recorded backlight", &Lighting::back);
+  devices.stage = std::make_unique<RecordedStage>(bench);
   return devices;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <set>
 
 #include "drivers/error.h"
 #include "rig/toml_table.h"
@@ -13,6 +14,9 @@ namespace {
 
 constexpr int kMostPixels = 65535;  // along an edge; keeps width * height * 2 far inside 64 bits
 constexpr double kParallelSine = 1e-6;
+constexpr int kTagIds = 587;             // of the family tag36h11
+constexpr int kMostBoardCells = 200;     // along a side
+constexpr double kTagWithMargin = 1.25;  // its ten cells against the eight inside the margin
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 
@@ -167,7 +171,47 @@ SphereLineDescription read_spheres(const TomlTable& table) {
   return spheres;
 }
 
-GrayCardDescription read_gray_card(const TomlTable& table) {
+TagDescription read_tag(const TomlTable& table) {
+  TagDescription tag;
+  tag.id = table.integer("id", 0, kTagIds - 1);
+  tag.size_m = table.number("size_m", NumberRange::positive());
+  const std::string frame = table.string("frame");
+  if (frame != "table" && frame != "rig") table.reject("frame", frame, "table or rig");
+  tag.on_table = frame == "table";
+  tag.centre = vector3(table, "centre_m");
+  tag.normal = direction(table, "normal");
+  const Eigen::Vector3d up = direction(table, "up");
+  reject_parallel(table, "up", up, tag.normal, "normal");
+  tag.up = (up - tag.normal * tag.normal.dot(up)).normalized();
+  table.reject_unread();
+  return tag;
+}
+
+std::vector<TagDescription> read_tags(const TomlTable& rig) {
+  std::vector<TagDescription> tags;
+  std::set<int> ids;
+  for (const TomlTable& entry : rig.tables("tags")) {
+    tags.push_back(read_tag(entry));
+    if (!ids.insert(tags.back().id).second) {
+      entry.reject("id", std::to_string(tags.back().id) + " for a second time", "an id of its own for every tag");
+    }
+  }
+  return tags;
+}
+
+std::vector<int> read_tag_ids(const TomlTable& card, const std::vector<TagDescription>& tags) {
+  std::vector<int> ids;
+  for (const double number : card.numbers("tag_ids", 0, NumberRange::finite())) {
+    const auto named = std::find_if(tags.begin(), tags.end(), [&](const TagDescription& tag) { return tag.id == number; });
+    if (named == tags.end() || named->on_table) {
+      card.reject("tag_ids", std::to_string(number), "ids of [[tags]] with frame = \"rig\"");
+    }
+    ids.push_back(named->id);
+  }
+  return ids;
+}
+
+GrayCardDescription read_gray_card(const TomlTable& table, const std::vector<TagDescription>& tags) {
   GrayCardDescription card;
   card.albedo = table.number("albedo", NumberRange::between(1e-6, 1.0));
   card.size_m = table.number("size_m", NumberRange::positive());
@@ -175,8 +219,40 @@ GrayCardDescription read_gray_card(const TomlTable& table) {
   card.normal_in_rig = direction(table, "normal_in_rig");
   card.up_in_rig = direction(table, "up_in_rig");
   reject_parallel(table, "up_in_rig", card.up_in_rig, card.normal_in_rig, "normal_in_rig");
+  if (table.has("tag_ids")) card.tag_ids = read_tag_ids(table, tags);
   table.reject_unread();
   return card;
+}
+
+BoardDescription::Pattern read_pattern(const TomlTable& table) {
+  const std::string name = table.string("pattern");
+  if (name == "checkerboard") return BoardDescription::Pattern::Checkerboard;
+  if (name == "tag_grid") return BoardDescription::Pattern::TagGrid;
+  table.reject("pattern", name, "checkerboard or tag_grid");
+}
+
+void read_tag_grid(const TomlTable& table, BoardDescription& board) {
+  board.tag_size_m = table.number("tag_size_m", NumberRange::positive());
+  if (board.tag_size_m * kTagWithMargin > board.pitch_m) {
+    table.reject("tag_size_m", std::to_string(board.tag_size_m), "at most 0.8 * pitch_m: a tag needs its white margin");
+  }
+  board.first_tag_id = table.integer("first_tag_id", 0, kTagIds - 1);
+  if (board.first_tag_id + board.columns * board.rows > kTagIds) {
+    table.reject("first_tag_id", std::to_string(board.first_tag_id),
+                 "ids up to " + std::to_string(kTagIds - 1) + " for all columns * rows tags");
+  }
+}
+
+BoardDescription read_board(const TomlTable& table) {
+  BoardDescription board;
+  board.pattern = read_pattern(table);
+  board.columns = table.integer("columns", 1, kMostBoardCells);
+  board.rows = table.integer("rows", 1, kMostBoardCells);
+  board.pitch_m = table.number("pitch_m", NumberRange::positive());
+  board.albedo = table.number("albedo", NumberRange::between(0.1, 1.0));
+  if (board.pattern == BoardDescription::Pattern::TagGrid) read_tag_grid(table, board);
+  table.reject_unread();
+  return board;
 }
 
 }  // namespace
@@ -209,7 +285,9 @@ RigDescription parse_rig(const std::string& toml_text, const std::string& where)
   rig.ring_flash.radius_m = ring.number("radius_m", NumberRange::positive());
   ring.reject_unread();
   rig.spheres = read_spheres(table.table("spheres"));
-  rig.gray_card = read_gray_card(table.table("gray_card"));
+  if (table.has("tags")) rig.tags = read_tags(table);
+  if (table.has("board")) rig.board = read_board(table.table("board"));
+  rig.gray_card = read_gray_card(table.table("gray_card"), rig.tags);
   if (table.has("hardware")) rig.hardware_toml = table.text_of("hardware");
   if (table.has("recorded")) {
     const TomlTable recorded = table.table("recorded");

@@ -17,16 +17,22 @@ struct Exposures {
   std::vector<CameraSettings> bracket, gray_card;
 };
 
+struct LensExposures {
+  CameraSettings board;
+  std::vector<CameraSettings> flat_field, lamp_pattern;
+};
+
 class ExposureReader {
  public:
   ExposureReader(const CapturePlan& plan, const CameraLimits& limits, const std::string& where)
       : plan_(plan), limits_(limits), where_(where) {}
 
+  // keys are the plan's, with their table: "exposures.bracket_s"
   CameraSettings single(double exposure_s, const std::string& key) const {
     try {
       return quantise({exposure_s, plan_.gain_db}, limits_, "the rig's camera");
     } catch (const OutOfRange& error) {
-      throw BadInput(where_ + ": exposures." + key, error.what(), "an exposure within these limits");
+      throw BadInput(where_ + ": " + key, error.what(), "an exposure within these limits");
     }
   }
 
@@ -37,7 +43,7 @@ class ExposureReader {
       if (settings.size() > 1 && settings.back() == settings[settings.size() - 2]) {
         std::ostringstream step;
         step << "exposures further apart than the camera's step of " << limits_.exposure_step_s << " s";
-        throw BadInput(where_ + ": exposures." + key, "two exposures become the same", step.str());
+        throw BadInput(where_ + ": " + key, "two exposures become the same", step.str());
       }
     }
     return settings;
@@ -51,10 +57,21 @@ class ExposureReader {
 
 Exposures read_exposures(const CapturePlan& plan, const CameraLimits& limits, const std::string& where) {
   const ExposureReader read(plan, limits, where);
-  return {read.single(plan.silhouette_exposure_s, "silhouette_s"),
-          read.single(plan.spheres_ring_exposure_s, "spheres_ring_s"),
-          read.single(plan.spheres_point_exposure_s, "spheres_point_s"),
-          read.bracket(plan.bracket_exposures_s, "bracket_s"), read.bracket(plan.gray_card_exposures_s, "gray_card_s")};
+  return {read.single(plan.silhouette_exposure_s, "exposures.silhouette_s"),
+          read.single(plan.spheres_ring_exposure_s, "exposures.spheres_ring_s"),
+          read.single(plan.spheres_point_exposure_s, "exposures.spheres_point_s"),
+          read.bracket(plan.bracket_exposures_s, "exposures.bracket_s"),
+          read.bracket(plan.gray_card_exposures_s, "exposures.gray_card_s")};
+}
+
+LensExposures read_lens_exposures(const CapturePlan& plan, const CameraLimits& limits, const std::string& where) {
+  const ExposureReader read(plan, limits, where);
+  const LensPlan& lens = *plan.lens;
+  LensExposures exposures;
+  if (lens.board_placements > 0) exposures.board = read.single(lens.board_exposure_s, "lens.board_s");
+  exposures.flat_field = read.bracket(lens.flat_field_exposures_s, "lens.flat_field_s");
+  exposures.lamp_pattern = read.bracket(lens.lamp_pattern_exposures_s, "lens.lamp_pattern_s");
+  return exposures;
 }
 
 void require_reach(const LightPositionerDescription& arm, double azimuth_deg, double elevation_deg,
@@ -74,7 +91,18 @@ void require_reach(const CapturePlan& plan, const LightPositionerDescription& ar
   for (const PlannedView& view : plan.views) {
     require_reach(arm, view.light_azimuth_deg, view.light_elevation_deg, where + ": views." + view.name);
   }
-  require_reach(arm, plan.gray_card_light_azimuth_deg, plan.gray_card_light_elevation_deg, where + ": gray_card");
+  if (!plan.views.empty()) {
+    require_reach(arm, plan.gray_card_light_azimuth_deg, plan.gray_card_light_elevation_deg, where + ": gray_card");
+  }
+  if (plan.lens && !plan.lens->lamp_pattern_exposures_s.empty()) {
+    require_reach(arm, plan.lens->light_azimuth_deg, plan.lens->light_elevation_deg, where + ": lens");
+  }
+}
+
+void require_board(const CapturePlan& plan, const RigDescription& rig, const std::string& where) {
+  if (plan.lens && plan.lens->board_placements > 0 && !rig.board) {
+    throw BadInput(where + ": lens.board_placements", "the rig has no board", "a [board] in the rig's file");
+  }
 }
 
 // The view after which the card costs the least motion; usually the plan gives the card the light of one of its
@@ -116,18 +144,34 @@ class ShotList {
   RigPosition position_;
 };
 
-}  // namespace
+// Where the axes stand when a session begins.
+RigPosition at_rest(const LightPositionerDescription& arm) {
+  return {0.0, std::clamp(0.0, arm.azimuth_min_deg, arm.azimuth_max_deg),
+          std::clamp(0.0, arm.elevation_min_deg, arm.elevation_max_deg)};
+}
 
-std::vector<Shot> schedule_shots(const CapturePlan& plan, const RigDescription& rig, const std::string& plan_where) {
-  require_reach(plan, rig.light_positioner, plan_where);
-  const Exposures exposures = read_exposures(plan, rig.camera.limits, plan_where);
+void add_lens_shots(const CapturePlan& plan, const RigDescription& rig, const std::string& where, ShotList& list) {
+  const LensPlan& lens = *plan.lens;
+  const LensExposures exposures = read_lens_exposures(plan, rig.camera.limits, where);
+  list.stand_at(at_rest(rig.light_positioner));
+  for (int placement = 1; placement <= lens.board_placements; ++placement) {
+    list.add(ShotKind::Board, "", placement, exposures.board);
+    if (placement > 1 || exposures.lamp_pattern.empty()) continue;
+    list.stand_at({0.0, lens.light_azimuth_deg, lens.light_elevation_deg});
+    list.add_bracket(ShotKind::LampPattern, "", exposures.lamp_pattern);
+  }
+  for (const CameraSettings& settings : exposures.flat_field) {
+    for (int i = 0; i < lens.flat_field_frames; ++i) list.add(ShotKind::FlatField, "", i, settings);
+  }
+}
+
+void add_views(const CapturePlan& plan, const RigDescription& rig, const std::string& where, ShotList& list) {
+  const Exposures exposures = read_exposures(plan, rig.camera.limits, where);
   std::vector<RigPosition> positions;
   for (const PlannedView& view : plan.views) {
     positions.push_back({view.turntable_deg, view.light_azimuth_deg, view.light_elevation_deg});
   }
   const std::size_t card_view = view_for_gray_card(plan, positions, rig);
-
-  ShotList list;
   for (const std::size_t i : short_order(positions, rig)) {
     const std::string& view = plan.views[i].name;
     list.stand_at(positions[i]);
@@ -140,6 +184,16 @@ std::vector<Shot> schedule_shots(const CapturePlan& plan, const RigDescription& 
         {positions[i].turntable_deg, plan.gray_card_light_azimuth_deg, plan.gray_card_light_elevation_deg});
     list.add_bracket(ShotKind::GrayCard, "", exposures.gray_card);
   }
+}
+
+}  // namespace
+
+std::vector<Shot> schedule_shots(const CapturePlan& plan, const RigDescription& rig, const std::string& plan_where) {
+  require_reach(plan, rig.light_positioner, plan_where);
+  require_board(plan, rig, plan_where);
+  ShotList list;
+  if (plan.lens) add_lens_shots(plan, rig, plan_where, list);
+  if (!plan.views.empty()) add_views(plan, rig, plan_where, list);
   list.add_darks(plan.darks_per_exposure);
   return list.take();
 }

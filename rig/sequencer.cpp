@@ -9,6 +9,7 @@
 #include "rig/frame_file.h"
 #include "rig/guarded_run.h"
 #include "rig/lighting.h"
+#include "rig/stage.h"
 
 namespace lumitexel {
 namespace {
@@ -79,7 +80,7 @@ class DiscardJournal {
 class Sequencer {
  public:
   Sequencer(RigDevices& devices, SessionStore& session, GuardedRun& guard)
-      : devices_(devices), guard_(guard), stop_(guard.stop()), discards_(devices, session),
+      : devices_(devices), guard_(guard), stop_(guard.stop()), discards_(devices, session), stage_(devices, session),
         turntable_(*devices.turntable), light_azimuth_(*devices.light_azimuth), light_elevation_(*devices.light_elevation) {
     for (const Axis* axis : {devices.turntable.get(), devices.light_azimuth.get(), devices.light_elevation.get()}) {
       moves_s_ += longest_motion_s(axis->limits());
@@ -104,6 +105,7 @@ class Sequencer {
   Frame expose(const Shot& shot) {
     const Lighting lighting = lighting_of(shot.kind);
     switch_lamps(lighting, false);  // first, so that never two lamps are lit together
+    stage_.show(prop_for(shot), stop_);
     turntable_.send_to(shot.turntable_deg, stop_);
     light_azimuth_.send_to(shot.light_azimuth_deg, stop_);
     light_elevation_.send_to(shot.light_elevation_deg, stop_);
@@ -157,6 +159,7 @@ class Sequencer {
   std::stop_token stop_;
   double moves_s_ = 0;
   DiscardJournal discards_;
+  Stage stage_;
   SentAxis turntable_, light_azimuth_, light_elevation_;
 };
 

@@ -1,6 +1,6 @@
 // Takes the shots that a session still lacks.
 //
-//   for every missing shot:  lamps off ▸ axes ▸ lamps on ▸ expose ▸ read axes back ▸ commit
+//   for every missing shot:  lamps off ▸ stage ▸ axes ▸ lamps on ▸ expose ▸ read axes back ▸ commit
 //
 // Lamps that are already right are not switched and axes that already stand there are not moved. However the run ends,
 // by its last shot, a fault or a cancel, all lamps are off and all axes halted afterwards.
@@ -30,7 +30,8 @@ struct SequenceSummary {
 // Each frame is committed before the next shot begins, so that a stop at any moment loses at most the shot in progress.
 // Begin, end and faults are logged as events of the session, frames that the camera discarded as discards. Throws what
 // the devices and the store throw, Protocol for a frame that is not of the camera's size or an axis that stands
-// elsewhere, Cancelled once stop is requested.
+// elsewhere, Error where an operator has to change what stands before the camera (rig/stage.h), Cancelled once stop is
+// requested.
 SequenceSummary take_missing_shots(SessionStore& session, RigDevices& devices, Progress& progress,
                                    std::stop_token stop);
 

@@ -9,12 +9,15 @@
 namespace lumitexel {
 namespace {
 
-constexpr std::array<std::pair<ShotKind, const char*>, 6> kKindNames{{{ShotKind::Silhouette, "silhouette"},
+constexpr std::array<std::pair<ShotKind, const char*>, 9> kKindNames{{{ShotKind::Silhouette, "silhouette"},
                                                                       {ShotKind::SpheresRing, "spheres_ring"},
                                                                       {ShotKind::SpheresPoint, "spheres_point"},
                                                                       {ShotKind::Object, "object"},
                                                                       {ShotKind::GrayCard, "gray_card"},
-                                                                      {ShotKind::Dark, "dark"}}};
+                                                                      {ShotKind::Dark, "dark"},
+                                                                      {ShotKind::Board, "board"},
+                                                                      {ShotKind::FlatField, "flat_field"},
+                                                                      {ShotKind::LampPattern, "lamp_pattern"}}};
 
 }  // namespace
 

@@ -15,6 +15,9 @@ enum class ShotKind {
   Object,        // point light, one exposure of the view's bracket
   GrayCard,      // point light, one exposure of the card's bracket
   Dark,          // nothing lit
+  Board,         // ring flash, the board before the camera
+  FlatField,     // none of our lamps: an evenly lit diffuser before the lens
+  LampPattern,   // point light on the board in placement 1, one exposure of its bracket
 };
 
 const char* to_string(ShotKind kind);                     // "silhouette", "spheres_ring", …
@@ -23,8 +26,9 @@ ShotKind shot_kind_from_string(const std::string& name);  // throws Corrupt on a
 struct Shot {
   std::int64_t id = 0;    // 1, 2, … in the order of shooting
   ShotKind kind = ShotKind::Object;
-  std::string view;       // the view's name; empty for Dark and GrayCard
-  int index = 0;          // within kind and view: place in the bracket, or the repetition of a dark
+  std::string view;       // the view's name; empty for kinds that belong to none
+  int index = 0;          // within kind and view: place in the bracket; of darks and flat fields the repetition at this
+                          // exposure; of boards the placement: 1, 2, …
   CameraSettings camera;  // already quantised to what the camera can do
   double turntable_deg = 0, light_azimuth_deg = 0, light_elevation_deg = 0;
 };

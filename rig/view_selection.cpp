@@ -97,7 +97,7 @@ class Reader {
     try {
       return shot_kind_from_string(item);
     } catch (const Corrupt&) {
-      fail("no kind '" + item + "'", "silhouette, spheres_ring, spheres_point, object, gray_card or dark");
+      fail("no kind '" + item + "'", "silhouette, spheres_ring, spheres_point, object, gray_card, dark, board, flat_field or lamp_pattern");
     }
   }
 
@@ -122,7 +122,7 @@ ViewSelection select_views(const std::vector<SelectableView>& views, const Selec
     (kept ? selection.kept : selection.left_out).push_back(views[i].name);
     any_fit = any_fit || (kept && !views[i].heldout);
   }
-  if (!any_fit) {
+  if (!any_fit && !views.empty()) {  // a plan for the lens alone has none
     throw BadInput("--without and --only", "no view to fit is left",
                    "at least one that is not held out of " + listed(views));
   }

@@ -48,6 +48,7 @@ CaptureInputs read_capture_inputs(const std::string& rig_file, const std::string
   inputs.plan = parse_plan(inputs.documents["plan.toml"], plan_file);
   inputs.shots = schedule_shots(inputs.plan, inputs.rig, plan_file);
   inputs.backend = rig_backend(inputs.rig, rig_file);
+  if (inputs.plan.views.empty()) return inputs;  // for the lens alone: no object
   const Mesh mesh = coarse_mesh(inputs.plan, plan_file, mesh_file, inputs.backend);
   require_in_sight(mesh, inputs, plan_file);
   inputs.documents["mesh.ply"] = encode_ply(mesh);

@@ -17,7 +17,7 @@ struct CaptureInputs {
   CapturePlan plan;
   std::vector<Shot> shots;
   RigBackend backend;
-  std::map<std::string, std::string> documents;  // rig.toml, rig.path, plan.toml, mesh.ply: as the session keeps them
+  std::map<std::string, std::string> documents;  // rig.toml, rig.path, plan.toml, mesh.ply (with views): as the session keeps them
 };
 
 // Throws BadInput naming file and key or view for anything that cannot be used, a view without the mesh in its picture
