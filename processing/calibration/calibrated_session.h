@@ -13,6 +13,7 @@
 
 #include "processing/calibration/calibration_options.h"
 #include "processing/calibration/lens/camera_model.h"
+#include "processing/calibration/light/lamp_pattern.h"
 #include "processing/image/radiance_image.h"
 #include "processing/surface/mesh.h"
 #include "rig/progress.h"
@@ -24,8 +25,11 @@ struct Light {
   enum class Type { Point, Directional };
   Type type = Type::Point;
   Eigen::Vector3d vector_in_world = Eigen::Vector3d::Zero();  // position (m), or unit vector towards the light
-  std::vector<double> intensity;                              // per channel
+  std::vector<double> intensity;                              // per channel; of a point light along its lamp's z
   double sigma_m = 0;                                         // one sigma of the position per axis; 0 if unknown
+  // How a point light's intensity depends on direction; by default not at all.
+  LampPattern pattern{};
+  Eigen::Matrix3d lamp_from_world = Eigen::Matrix3d::Identity();  // turn of the lamp's frame (light/lamp_pattern.h)
 
   // Unit vector from the surface point towards the light.
   Eigen::Vector3d direction_from(const Eigen::Vector3d& x_in_world) const;

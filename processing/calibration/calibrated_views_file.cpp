@@ -4,12 +4,13 @@
 #include <nlohmann/json.hpp>
 
 #include "drivers/error.h"
+#include "processing/calibration/calibration_summary_json.h"
 
 namespace lumitexel {
 namespace {
 
 using nlohmann::json;
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 
 json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 Eigen::Vector3d vector_from(const json& j) {
@@ -58,7 +59,10 @@ json view_json(const View& view) {
            {{"point", view.light.type == Light::Type::Point},
             {"vector", vector_json(view.light.vector_in_world)},
             {"intensity", view.light.intensity},
-            {"sigma_m", view.light.sigma_m}}}};
+            {"sigma_m", view.light.sigma_m},
+            {"pattern", view.light.pattern.parameters()},
+            {"pattern_covariance", view.light.pattern.covariance().reshaped()},
+            {"lamp_from_world", view.light.lamp_from_world.reshaped()}}}};
 }
 
 View view_from(const json& j, const std::filesystem::path& directory) {
@@ -73,63 +77,13 @@ View view_from(const json& j, const std::filesystem::path& directory) {
   view.light.vector_in_world = vector_from(light.at("vector"));
   view.light.intensity = light.at("intensity").get<std::vector<double>>();
   view.light.sigma_m = light.at("sigma_m").get<double>();
+  const auto pattern = light.at("pattern").get<std::array<double, 4>>();
+  const auto covariance = light.at("pattern_covariance").get<std::array<double, 16>>();
+  view.light.pattern = LampPattern(Eigen::Map<const Eigen::Vector4d>(pattern.data()),
+                                   Eigen::Map<const Eigen::Matrix4d>(covariance.data()));
+  const auto turn = light.at("lamp_from_world").get<std::array<double, 9>>();
+  view.light.lamp_from_world = Eigen::Map<const Eigen::Matrix3d>(turn.data());
   return view;
-}
-
-json light_json(const LightSummary& l) {
-  return {{"view", l.view},
-          {"position", vector_json(l.position_in_world)},
-          {"sigma_m", l.sigma_m},
-          {"from_spheres", l.from_spheres},
-          {"highlights", l.highlights},
-          {"outliers", l.outliers},
-          {"residual_px", l.residual_px},
-          {"spheres_alone", vector_json(l.spheres_alone_in_world)},
-          {"spheres_alone_sigma_m", l.spheres_alone_sigma_m},
-          {"off_the_arm", l.off_the_arm}};
-}
-
-LightSummary light_from(const json& j) {
-  return {j.at("view").get<std::string>(),
-          vector_from(j.at("position")),
-          j.at("sigma_m").get<double>(),
-          j.at("from_spheres").get<bool>(),
-          j.at("highlights").get<int>(),
-          j.at("outliers").get<int>(),
-          j.at("residual_px").get<double>(),
-          vector_from(j.at("spheres_alone")),
-          j.at("spheres_alone_sigma_m").get<double>(),
-          j.at("off_the_arm").get<bool>()};
-}
-
-json summary_json(const CalibrationSummary& s) {
-  json lights = json::array();
-  for (const LightSummary& light : s.lights) lights.push_back(light_json(light));
-  return {{"lights", lights},
-          {"sphere_residual_px", s.sphere_residual_px},
-          {"sphere_sigma_scale", s.sphere_sigma_scale},
-          {"arm_scatter_m", s.arm_scatter_m},
-          {"arm_residual_m", s.arm_residual_m},
-          {"intensity", s.intensity},
-          {"gray_card_pixel_scatter", s.gray_card_pixel_scatter},
-          {"scale_sigma", s.scale_sigma},
-          {"hot_pixels", s.hot_pixels},
-          {"views_without_silhouette", s.views_without_silhouette}};
-}
-
-CalibrationSummary summary_from(const json& j) {
-  CalibrationSummary s;
-  for (const json& light : j.at("lights")) s.lights.push_back(light_from(light));
-  s.sphere_residual_px = j.at("sphere_residual_px").get<double>();
-  s.sphere_sigma_scale = j.at("sphere_sigma_scale").get<double>();
-  s.arm_scatter_m = j.at("arm_scatter_m").get<double>();
-  s.arm_residual_m = j.at("arm_residual_m").get<double>();
-  s.intensity = j.at("intensity").get<std::vector<double>>();
-  s.gray_card_pixel_scatter = j.at("gray_card_pixel_scatter").get<std::vector<double>>();
-  s.scale_sigma = j.at("scale_sigma").get<double>();
-  s.hot_pixels = j.at("hot_pixels").get<std::int64_t>();
-  s.views_without_silhouette = j.at("views_without_silhouette").get<int>();
-  return s;
 }
 
 }  // namespace
@@ -169,7 +123,7 @@ std::optional<std::pair<CalibratedSession, CalibrationSummary>> read_calibrated_
       session.views.push_back(view_from(view, directory));
       if (!std::filesystem::exists(session.views.back().photograph)) return std::nullopt;
     }
-    return std::pair{std::move(session), summary_from(document.at("summary"))};
+    return std::pair{std::move(session), summary_from_json(document.at("summary"))};
   } catch (const json::exception&) {
     return std::nullopt;  // damaged: what is derived is made again
   }

@@ -1,8 +1,10 @@
-// What calibration measured beside what the fit needs: uncertainties and figures that tell whether to trust it.
+// What calibration measured beside what the fit needs: uncertainties, and figures that tell whether to trust it. One
+// sigma throughout; what was not measured is empty, and `source` or a note says what was taken instead.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,51 @@ struct LightSummary {
   bool off_the_arm = false;  // farther from the aligned arm than 5 sigma
 };
 
+struct SensorSummary {
+  std::string source = "rig description";  // of the noise figures; else "photon transfer"
+  double electrons_per_dn = 0, read_noise_dn = 0, black_level_dn = 0, saturation_dn = 0;
+  std::optional<double> electrons_per_dn_sigma, read_noise_dn_sigma, black_level_dn_sigma, saturation_dn_sigma;
+  bool linear = true;                                      // false: a response curve was undone
+  std::optional<double> coldest_c, warmest_c;              // over the session's frames
+  int brackets_with_scaled_darks = 0;                      // the frames' dark current was not that of their darks
+  int brackets_with_drifted_darks = 0;                     // nor could it be told how much it was
+  std::optional<double> least_dark_scale, largest_dark_scale;
+  std::vector<std::string> notes{};
+};
+
+struct LensSummary {
+  std::string source = "rig description";  // else "boards of this session"
+  std::optional<double> reprojection_px;   // rms
+  std::vector<double> sigma{};             // focal x, y, principal x, y, k1, k2, p1, p2 (px, 1); empty if unknown
+  int boards = 0;                          // used
+  std::vector<std::string> notes{};        // boards rejected and why, parts of the picture without boards, refusals
+  std::optional<double> corner_transmission, corner_transmission_sigma;  // against the principal point
+};
+
+struct PoseSummary {
+  std::string view;
+  std::string source = "rig description";           // else "silhouette", "silhouette and tags"
+  std::optional<double> sigma_m, sigma_deg;          // of |shift| and |turn| of the object before the camera
+  std::optional<double> silhouette_px;               // median distance between the mesh's outline and the picture's
+  int tags = 0;
+  std::string dominant{};                            // what most of the shift's variance comes from
+};
+
+struct LampSummary {
+  bool drifts = false;
+  std::vector<double> factor{}, factor_sigma{};   // a view: output over that at the gray card's bracket
+  int card_views = 0, card_outliers = 0;          // views in which the card could be measured, and did not fit
+  int pattern_parameters = 0;                     // 0: equal in all directions, as far as is known
+  std::optional<double> at_10_deg;                // relative to its axis
+  std::string card_source = "rig description";    // of the card's pose; else "tags"
+};
+
+// Shares of a quantity's variance.
+struct UncertaintyShare {
+  std::string quantity, source;
+  double share = 0;
+};
+
 struct CalibrationSummary {
   std::vector<LightSummary> lights;  // in the order of the session's views
   double sphere_residual_px = 0;     // rms over all highlights of the session
@@ -29,6 +76,13 @@ struct CalibrationSummary {
   double scale_sigma = 0;            // relative
   std::int64_t hot_pixels = 0;       // in the darks with the most of them
   int views_without_silhouette = 0;  // masked by the mesh's projection alone
+  SensorSummary sensor;
+  LensSummary lens;
+  std::vector<PoseSummary> poses;  // in the order of the session's views
+  std::string pose_problem;        // why poses are the rig description's; empty if they are not, or nothing was tried
+  LampSummary lamp;
+  std::vector<UncertaintyShare> shares;  // sums to 1 for each quantity
+  std::vector<std::string> pictures;     // PNG files beside the photographs, "lens_coverage.png"
 };
 
 }  // namespace lumitexel
