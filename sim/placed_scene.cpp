@@ -12,25 +12,39 @@ constexpr double kStartOffset_m = 1e-9;
 
 }  // namespace
 
-PlacedScene::PlacedScene(const SimulatedWorld& world, double turntable_deg)
-    : world_(world), table_from_rig_(world.rig.turntable.rig_from_table(turntable_deg).inverse()) {
-  for (const Eigen::Vector3d& centre : world.sphere_centres_in_rig()) spheres_.push_back(table_from_rig_ * centre);
+PlacedScene::PlacedScene(const SimulatedWorld& world, double turntable_deg, bool with_tags)
+    : world_(world), mesh_from_rig_(world.mesh_from_rig(turntable_deg)) {
+  for (const Eigen::Vector3d& centre : world.sphere_centres_in_rig()) spheres_.push_back(mesh_from_rig_ * centre);
 
   const GrayCardDescription& card = world.rig.gray_card;
-  card_.centre = table_from_rig_ * card.centre_in_rig;
-  card_.normal = table_from_rig_.linear() * card.normal_in_rig.normalized();
-  const Eigen::Vector3d wanted_up = table_from_rig_.linear() * card.up_in_rig;
+  card_.centre = mesh_from_rig_ * card.centre_in_rig;
+  card_.normal = mesh_from_rig_.linear() * card.normal_in_rig.normalized();
+  const Eigen::Vector3d wanted_up = mesh_from_rig_.linear() * card.up_in_rig;
   card_.up = (wanted_up - card_.normal * card_.normal.dot(wanted_up)).normalized();
   card_.right = card_.up.cross(card_.normal);
   card_.half_width_m = card_.half_height_m = 0.5 * card.size_m;
 
-  const Eigen::Isometry3d table_from_camera = table_from_rig_ * world.rig.camera.camera_from_rig.inverse();
-  panel_.centre = table_from_camera * Eigen::Vector3d(0, 0, world.settings.backlight_distance_m);
-  panel_.right = table_from_camera.linear().col(0);
-  panel_.up = -table_from_camera.linear().col(1);
-  panel_.normal = -table_from_camera.linear().col(2);
+  const Eigen::Isometry3d mesh_from_camera = mesh_from_rig_ * world.rig.camera.camera_from_rig.inverse();
+  panel_.centre = mesh_from_camera * Eigen::Vector3d(0, 0, world.settings.backlight_distance_m);
+  panel_.right = mesh_from_camera.linear().col(0);
+  panel_.up = -mesh_from_camera.linear().col(1);
+  panel_.normal = -mesh_from_camera.linear().col(2);
   panel_.half_width_m = 0.5 * world.settings.backlight_size_m.x();
   panel_.half_height_m = 0.5 * world.settings.backlight_size_m.y();
+
+  if (!with_tags) return;
+  for (const TagDescription& tag : world.rig.tags) tags_.push_back(placed_tag(tag));
+}
+
+PlacedScene::Square PlacedScene::placed_tag(const TagDescription& tag) const {
+  const Eigen::Isometry3d mesh_from_tags = tag.on_table ? world_.table_from_mesh.inverse() : mesh_from_rig_;
+  Square square;
+  square.centre = mesh_from_tags * tag.centre;
+  square.normal = mesh_from_tags.linear() * tag.normal;
+  square.up = mesh_from_tags.linear() * tag.up;
+  square.right = square.up.cross(square.normal);
+  square.half_width_m = square.half_height_m = TagPattern::kHalfExtent * tag.size_m;
+  return square;
 }
 
 double PlacedScene::Square::distance_along(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
@@ -85,7 +99,29 @@ SceneHit PlacedScene::closest(const Eigen::Vector3d& origin, const Eigen::Vector
       result = {part, distance, origin + distance * direction, square->normal, square->normal};
     }
   }
+  for (std::size_t i = 0; i < tags_.size(); ++i) {
+    const double distance = tags_[i].distance_along(origin, direction);
+    if (distance < result.distance_m) {
+      result = {ScenePart::Tag, distance, origin + distance * direction, tags_[i].normal, tags_[i].normal, i};
+    }
+  }
   return result;
+}
+
+double PlacedScene::tag_albedo(const SceneHit& hit, const Eigen::Vector3d& across, const Eigen::Vector3d& down) const {
+  constexpr int kSide = 4;
+  const Square& square = tags_[hit.tag];
+  const double size_m = world_.rig.tags[hit.tag].size_m;
+  const auto in_sizes = [&](const Eigen::Vector3d& x) -> Eigen::Vector2d {
+    return Eigen::Vector2d(x.dot(square.right), x.dot(square.up)) / size_m;
+  };
+  const Eigen::Vector2d middle = in_sizes(hit.point - square.centre), right = in_sizes(across), below = in_sizes(down);
+  int white = 0;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const double u = (i % kSide + 0.5) / kSide - 0.5, v = (i / kSide + 0.5) / kSide - 0.5;
+    white += world_.tag_patterns[hit.tag].white_at(middle + u * right + v * below) ? 1 : 0;
+  }
+  return kPrintedBlack + (kTagWhite - kPrintedBlack) * white / (kSide * kSide);
 }
 
 bool PlacedScene::shadowed(const SceneHit& hit, const Eigen::Vector3d& light) const {

@@ -1,5 +1,8 @@
 // What the camera's lens throws onto the sensor: radiance in W/(m^2 sr) per pixel, three channels, before any noise.
 //
+// The lens's vignetting is in it. What drifts over a session is not: a frame's share of the point light's strength is a factor
+// on the picture.
+//
 // Direct light only, with shadows of every part on every part. A pixel is the mean of samples_per_pixel rays on a
 // regular grid over its area (a box filter by the midpoint rule; no randomness, so that highlights keep their centroid).
 #pragma once
@@ -13,7 +16,6 @@
 #include <vector>
 
 #include "processing/image/image.h"
-#include "sim/placed_scene.h"
 #include "sim/simulated_world.h"
 
 namespace lumitexel {
@@ -33,6 +35,8 @@ class RadianceRenderer {
 
  private:
   Image render_uncached(const WorldState& state) const;
+  Image render_scene(const WorldState& state) const;
+  void darken_corners(Image& image) const;
 
   std::shared_ptr<const SimulatedWorld> world_;
   std::vector<Eigen::Vector3d> corner_directions_;  // z = 1; (width + 1) * (height + 1)

@@ -22,7 +22,10 @@ std::shared_ptr<SimulatedBench> make_rendered_bench(const RigDescription& rig, s
   return std::make_shared<SimulatedBench>(
       rig, world->settings, std::move(clock),
       [pixels](const WorldState& state, const CameraSettings& settings, std::uint64_t noise_key) {
-        return pixels->sensor.expose(*pixels->renderer.render(state), settings, noise_key);
+        // One lamp at a time: the sequencer sees to that.
+        const double light_share = state.point_light && !state.flat_field ? state.lamp_strength : 1.0;
+        return pixels->sensor.expose(*pixels->renderer.render(state), settings, noise_key, light_share,
+                                     state.sensor_warming_k);
       });
 }
 

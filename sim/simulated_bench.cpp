@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "sim/seeded_random.h"
+#include "sim/session_drift.h"
 #include "sim/state_strip.h"
 
 namespace lumitexel {
@@ -123,6 +124,12 @@ void SimulatedBench::break_lamp(BenchLamp lamp, bool broken) {
   broken_[index_of(lamp)] = broken;
 }
 
+void SimulatedBench::place(int board, bool flat_field) {
+  const std::lock_guard lock(mutex_);
+  board_ = board;
+  flat_field_ = flat_field;
+}
+
 double SimulatedBench::true_turntable_deg(double now_s) const {
   const AxisModel& axis = axes_[index_of(BenchAxis::Turntable)];
   double place = motion_of(axis, now_s).position + axis.rest_offset;
@@ -140,7 +147,8 @@ WorldState SimulatedBench::state_at(double now_s) const {
   const auto position = [&](BenchAxis axis) { return motion_of(axes_[index_of(axis)], now_s).position; };
   const auto lit = [&](BenchLamp lamp) { return lit_[index_of(lamp)] && !broken_[index_of(lamp)]; };
   return {true_turntable_deg(now_s),  position(BenchAxis::LightAzimuth), position(BenchAxis::LightElevation),
-          lit(BenchLamp::Point),      lit(BenchLamp::Ring),              lit(BenchLamp::Back)};
+          lit(BenchLamp::Point),      lit(BenchLamp::Ring),              lit(BenchLamp::Back),
+          board_,                     flat_field_};
 }
 
 WorldState SimulatedBench::state() const {
@@ -157,7 +165,9 @@ std::uint64_t SimulatedBench::noise_key(const CameraSettings& settings, const Wo
     key = extended_key(key, part);
   }
   const unsigned lamps = (state.point_light ? 1u : 0u) | (state.ring_flash ? 2u : 0u) | (state.backlight ? 4u : 0u);
-  return extended_key(key, std::uint64_t{lamps});
+  key = extended_key(key, std::uint64_t{lamps});
+  if (state.board == 0 && !state.flat_field) return key;
+  return extended_key(key, 2 * static_cast<std::uint64_t>(state.board) + (state.flat_field ? 1u : 0u));
 }
 
 std::uint64_t SimulatedBench::exposures() const {
@@ -171,6 +181,8 @@ BenchExposure SimulatedBench::expose(const CameraSettings& settings, std::uint64
   BenchExposure exposure;
   exposure.settings = settings;
   exposure.state = state();
+  exposure.state.lamp_strength = lamp_strength_at(behaviour_, frame_key);
+  exposure.state.sensor_warming_k = sensor_warming_at(behaviour_, frame_key);
   exposure.frame_key = frame_key;
   clock_->sleep_until(start_s + settings.exposure_s, stop);
   exposure.end_s = start_s + settings.exposure_s;

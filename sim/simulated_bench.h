@@ -65,12 +65,14 @@ class SimulatedBench {
   void switch_lamp(BenchLamp lamp, bool on);
   bool is_lit(BenchLamp lamp) const;
 
+  void place(int board, bool flat_field);  // as WorldState has them
+
   // Faults: an axis that does not move any more until freed, a lamp that stays dark until mended.
   void jam(BenchAxis axis, bool jammed);
   void break_lamp(BenchLamp lamp, bool broken);
 
   // What the camera would see at this moment: true positions, not the encoders'.
-  WorldState state() const;
+  WorldState state() const;  // lamp and sensor as at the first shot
   // Takes settings.exposure_s on the clock, then computes. What is seen is the state at the exposure's middle; the
   // samples depend on the seed, the key, the settings and that state, and on nothing else. Throws Cancelled.
   BenchExposure expose(const CameraSettings& settings, std::uint64_t frame_key, std::stop_token stop);
@@ -95,6 +97,8 @@ class SimulatedBench {
   mutable std::mutex mutex_;
   std::array<AxisModel, 3> axes_;
   std::array<bool, 3> lit_{}, broken_{};
+  int board_ = 0;
+  bool flat_field_ = false;
   std::uint64_t exposures_ = 0;
 };
 

@@ -61,7 +61,7 @@ class SimulatedCamera final : public Camera {
     frame.samples = std::move(exposure.samples);
     frame.reported = exposure.settings;
     frame.device_time_s = exposure.end_s;
-    frame.sensor_temperature_c = bench_->behaviour().sensor_temperature_c;
+    frame.sensor_temperature_c = bench_->behaviour().sensor_temperature_c + exposure.state.sensor_warming_k;
     frame.device_frame_id = exposure.count;
     bench_->clock()->sleep_until(exposure.end_s + limit.readout_s, stop);
     return frame;
@@ -70,6 +70,17 @@ class SimulatedCamera final : public Camera {
  private:
   std::shared_ptr<SimulatedBench> bench_;
   CameraSettings armed_;
+};
+
+class SimulatedStage final : public StageHand {
+ public:
+  explicit SimulatedStage(std::shared_ptr<SimulatedBench> bench) : bench_(std::move(bench)) {}
+  void place(const Prop& prop, std::stop_token) override {
+    bench_->place(prop.placement, prop.kind == Prop::Kind::Diffuser);
+  }
+
+ private:
+  std::shared_ptr<SimulatedBench> bench_;
 };
 
 }  // namespace
@@ -84,6 +95,7 @@ RigDevices make_simulated_devices(const std::shared_ptr<SimulatedBench>& bench) 
   devices.point_light = std::make_unique<SimulatedLamp>(bench, BenchLamp::Point);
   devices.ring_flash = std::make_unique<SimulatedLamp>(bench, BenchLamp::Ring);
   devices.backlight = std::make_unique<SimulatedLamp>(bench, BenchLamp::Back);
+  devices.stage = std::make_unique<SimulatedStage>(bench);
   return devices;
 }
 

@@ -7,6 +7,7 @@
 #include "sim/loaded_object.h"
 #include "sim/procedural_object.h"
 #include "sim/simulated_rig.h"
+#include "sim/true_rig.h"
 
 namespace lumitexel {
 namespace {
@@ -30,21 +31,33 @@ std::vector<Material> named_materials(const SimulationSettings& settings, const 
   return materials;
 }
 
+std::vector<TagPattern> printed_tags(const std::vector<TagDescription>& tags) {
+  std::vector<TagPattern> patterns;
+  for (const TagDescription& tag : tags) patterns.emplace_back(tag.id);
+  return patterns;
+}
+
 double radians(double deg) { return deg * std::numbers::pi / 180.0; }
 
 }  // namespace
 
 SimulatedWorld::SimulatedWorld(const RigDescription& rig_description, const SimulationSettings& simulation_settings,
                                const std::string& where)
-    : rig(rig_description),
+    : rig(true_rig(rig_description, simulation_settings)),
       settings(simulation_settings),
       camera(camera_model_of(rig.camera)),
       object(true_object(settings, where)),
       scan(settings.object == "vase" ? vase_scan(vase_options(settings))
                                      : smoothed(object, settings.scan_deviation_rms_m)),
+      table_from_mesh(true_table_from_mesh(settings)),
       object_rays(object),
       materials(named_materials(settings, where)),
-      pattern{settings.seed, static_cast<int>(materials.size()), settings.size_m} {}
+      pattern{settings.seed, static_cast<int>(materials.size()), settings.size_m},
+      tag_patterns(printed_tags(rig.tags)) {}
+
+Eigen::Isometry3d SimulatedWorld::mesh_from_rig(double turntable_deg) const {
+  return (rig.turntable.rig_from_table(turntable_deg) * table_from_mesh).inverse();
+}
 
 Eigen::Vector3d SimulatedWorld::point_light_in_rig(double azimuth_deg, double elevation_deg) const {
   const double azimuth = radians(azimuth_deg + settings.arm_azimuth_error_deg);

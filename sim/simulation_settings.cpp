@@ -125,6 +125,39 @@ void read_lamps(Table& table, SimulationSettings& s) {
   table.number("backlight_distance_m", s.backlight_distance_m, 0.1, 10.0);
   table.numbers("backlight_size_m", s.backlight_size_m, 0.01, 10.0);
   table.number("lamp_settle_s", s.lamp_settle_s, 0.0, 10.0);
+  table.number("lamp_radius_m", s.lamp_radius_m, 0.0, 0.2);
+  table.number("lamp_pattern_exponent", s.lamp_pattern_exponent, 0.0, 200.0);
+  table.numbers("lamp_pattern_tilt_deg", s.lamp_pattern_tilt_deg, -45.0, 45.0);
+  table.number("lamp_drift", s.lamp_drift, -0.9, 9.0);
+  table.whole("lamp_drift_shots", s.lamp_drift_shots, 1, 1'000'000);
+}
+
+void read_displacements(Table& table, SimulationSettings& s) {
+  table.number("lens_focal_error", s.lens_focal_error, -0.2, 0.2);
+  table.numbers("lens_principal_error_px", s.lens_principal_error_px, -1000.0, 1000.0);
+  table.numbers("lens_distortion_error", s.lens_distortion_error, -1.0, 1.0);
+  table.numbers("camera_position_error_m", s.camera_position_error_m, -0.1, 0.1);
+  table.numbers("camera_rotation_error_deg", s.camera_rotation_error_deg, -10.0, 10.0);
+  table.numbers("table_axis_point_error_m", s.table_axis_point_error_m, -0.1, 0.1);
+  table.numbers("table_axis_tilt_deg", s.table_axis_tilt_deg, -10.0, 10.0);
+  table.numbers("object_shift_m", s.object_shift_m, -1.0, 1.0);
+  table.numbers("object_turn_deg", s.object_turn_deg, -180.0, 180.0);
+  table.numbers("card_shift_m", s.card_shift_m, -0.1, 0.1);
+  table.numbers("card_turn_deg", s.card_turn_deg, -30.0, 30.0);
+}
+
+void read_lens_targets(Table& table, SimulationSettings& s) {
+  table.numbers("vignetting", s.vignetting, -2.0, 2.0);
+  // At the far corner r is at most 2, with the principal point in the opposite one; what matters is the picture's.
+  for (int i = 1; i <= 10; ++i) {
+    const double r2 = 0.01 * i * i;
+    if (1.0 + r2 * (s.vignetting[0] + r2 * (s.vignetting[1] + r2 * s.vignetting[2])) > 0.0) continue;
+    table.fail("vignetting", "no light left at r = " + Table::text_of(0.1 * i), "a factor above 0 up to r = 1");
+  }
+  table.numbers("flat_field_w_per_m2_sr", s.flat_field_w_per_m2_sr, 1e-6, 1e6);
+  table.whole("board_outlier_placements", s.board_outlier_placements, 0, 100);
+  table.number("board_bow_m", s.board_bow_m, -0.05, 0.05);
+  table.boolean("tags_clear_to_backlight", s.tags_clear_to_backlight);
 }
 
 void read_spheres(Table& table, SimulationSettings& s) {
@@ -145,6 +178,13 @@ void read_sensor(Table& table, SimulationSettings& s) {
   table.number("sensor_temperature_c", s.sensor_temperature_c, -50.0, 80.0);
   table.number("hot_pixel_fraction", s.hot_pixel_fraction, 0.0, 0.1);
   table.number("hot_pixel_current_e_per_s", s.hot_pixel_current_e_per_s, 0.0, 1e7);
+  table.number("sensor_warming_k", s.sensor_warming_k, -50.0, 50.0);
+  table.whole("sensor_warming_shots", s.sensor_warming_shots, 1, 1'000'000);
+  std::string response = to_string(s.response);
+  table.text("sensor_response", response);
+  const std::optional<SensorResponse> named = sensor_response_named(response);
+  if (!named) table.fail("sensor_response", "'" + response + "'", "linear, gamma or log-shoulder");
+  s.response = *named;
   table.boolean("state_strip", s.state_strip);
 }
 
@@ -181,6 +221,8 @@ SimulationSettings parse_simulation_settings(const std::string& toml_text, const
   }
   read_object(table, settings);
   read_lamps(table, settings);
+  read_displacements(table, settings);
+  read_lens_targets(table, settings);
   read_spheres(table, settings);
   read_sensor(table, settings);
   read_mechanics(table, settings);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/bench_behaviour.h"
+#include "sim/sensor_response.h"
 
 namespace lumitexel {
 
@@ -26,6 +27,10 @@ struct SimulationSettings : BenchBehaviour {
   Eigen::Vector3d arm_offset_m = Eigen::Vector3d::Zero();  // of the pivot
   double arm_azimuth_error_deg = 0.0, arm_elevation_error_deg = 0.0;
 
+  double lamp_radius_m = 0.0;            // of its disc; 0: a point
+  double lamp_pattern_exponent = 0.0;    // its intensity goes with the cosine to its axis to this power
+  Eigen::Vector2d lamp_pattern_tilt_deg = Eigen::Vector2d::Zero();  // of that axis (sim/point_lamp.h)
+
   Eigen::Array3d ring_flash_w_per_sr = Eigen::Array3d::Constant(5.0);  // of all emitters together
   int ring_flash_emitters = 32;
   Eigen::Array3d backlight_w_per_m2_sr = Eigen::Array3d::Constant(2.0);
@@ -38,12 +43,35 @@ struct SimulationSettings : BenchBehaviour {
   double sphere_roughness = 0.025;
   Eigen::Array3d sphere_reflectance{0.56, 0.57, 0.58};
 
+  // How the rest is off the rig's description (sim/true_rig.h). Turns are rotation vectors.
+  double lens_focal_error = 0.0;  // relative
+  Eigen::Vector2d lens_principal_error_px = Eigen::Vector2d::Zero();
+  Eigen::Vector4d lens_distortion_error = Eigen::Vector4d::Zero();           // k1, k2, p1, p2
+  Eigen::Vector3d camera_position_error_m = Eigen::Vector3d::Zero();         // in the rig's frame
+  Eigen::Vector3d camera_rotation_error_deg = Eigen::Vector3d::Zero();       // in the camera's frame
+  Eigen::Vector3d table_axis_point_error_m = Eigen::Vector3d::Zero();
+  Eigen::Vector2d table_axis_tilt_deg = Eigen::Vector2d::Zero();             // about the rig's x, then y
+  Eigen::Vector3d object_shift_m = Eigen::Vector3d::Zero();                  // where the operator put the object:
+  Eigen::Vector3d object_turn_deg = Eigen::Vector3d::Zero();                 // x_in_table = turn * x_in_mesh + shift
+  Eigen::Vector3d card_shift_m = Eigen::Vector3d::Zero();                    // the gray card and its tags,
+  Eigen::Vector3d card_turn_deg = Eigen::Vector3d::Zero();                   // turned about the card's centre
+
+  // What the lens calibration photographs.
+  Eigen::Vector3d vignetting = Eigen::Vector3d::Zero();  // a, b, c of 1 + a r^2 + b r^4 + c r^6 (sim/true_rig.h)
+  Eigen::Array3d flat_field_w_per_m2_sr = Eigen::Array3d::Constant(0.8);
+  int board_outlier_placements = 0;  // in so many placements the board is bent
+  double board_bow_m = 0.003;        // by so much
+
+  // Tags whose ink and paper let the backlight through, so that silhouettes do not show them.
+  bool tags_clear_to_backlight = false;
+
   // The sensor, as far as the rig's description does not say. Electrons = radiance * exposure * response.
   double response_e_per_s_per_radiance = 2e5;  // radiance in W/(m^2 sr)
   double dark_current_e_per_s = 2.0;           // at 20 degrees Celsius
   double dark_current_doubling_k = 7.0;
   double hot_pixel_fraction = 2e-4;
   double hot_pixel_current_e_per_s = 2000.0;  // mean, at 20 degrees Celsius
+  SensorResponse response = SensorResponse::Linear;  // "sensor_response"
 };
 
 // toml: the table's text, with or without its [simulation] header. Throws BadInput naming `where` and the key.

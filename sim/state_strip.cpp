@@ -55,9 +55,11 @@ void write_state_strip(const StateStrip& strip, int bits, std::vector<std::uint1
   row.put(thousandths(strip.state.turntable_deg), 32);
   row.put(thousandths(strip.state.light_azimuth_deg), 32);
   row.put(thousandths(strip.state.light_elevation_deg), 32);
-  row.put((strip.state.point_light ? 1u : 0u) | (strip.state.ring_flash ? 2u : 0u) | (strip.state.backlight ? 4u : 0u), 8);
+  row.put((strip.state.point_light ? 1u : 0u) | (strip.state.ring_flash ? 2u : 0u) | (strip.state.backlight ? 4u : 0u) |
+              (strip.state.flat_field ? 8u : 0u), 8);
   row.put(strip.frame_key, 64);
-  row.put(strip.exposure_count, 64);
+  row.put(strip.exposure_count, 48);
+  row.put(static_cast<std::uint64_t>(strip.state.board), 16);
   row.put(row.check_sum(row.place()), 64);
   const auto white = static_cast<std::uint16_t>((1u << bits) - 1u);
   for (std::size_t i = 0; i < kStateStripPixels; ++i) samples[i] = row.bits()[i] ? white : std::uint16_t{0};
@@ -79,7 +81,9 @@ std::optional<StateStrip> read_state_strip(std::span<const std::uint16_t> sample
   strip.state.ring_flash = lamps & 2u;
   strip.state.backlight = lamps & 4u;
   strip.frame_key = row.take(64);
-  strip.exposure_count = row.take(64);
+  strip.state.flat_field = lamps & 8u;
+  strip.exposure_count = row.take(48);
+  strip.state.board = static_cast<int>(row.take(16));
   const std::uint64_t sum = row.check_sum(row.place());
   if (row.take(64) != sum) return {};
   return strip;

@@ -14,9 +14,9 @@ namespace lumitexel {
 
 struct StateStrip {
   CameraSettings settings;  // exposure to the nanosecond, gain to 0.001 dB
-  WorldState state;         // angles to 0.001 degrees
+  WorldState state;         // angles to 0.001 degrees; without what drifts over the session
   std::uint64_t frame_key = 0;
-  std::uint64_t exposure_count = 0;  // SimulatedBench's
+  std::uint64_t exposure_count = 0;  // SimulatedBench's, below 2^48
 };
 
 inline constexpr std::size_t kStateStripPixels = 408;

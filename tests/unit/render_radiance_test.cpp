@@ -131,7 +131,7 @@ TEST(PlacedScene, TheObjectShadesCardAndSpheresAndTurnsWithTheTable) {
     const PlacedScene scene(*world, angle);
     SceneHit card;
     card.part = ScenePart::GrayCard;
-    card.point = scene.table_from_rig() * world->rig.gray_card.centre_in_rig;
+    card.point = scene.mesh_from_rig() * world->rig.gray_card.centre_in_rig;
     SceneHit sphere;
     sphere.part = ScenePart::Sphere;  // its lowest point
     sphere.point = scene.table_from_rig() * (world->sphere_centres_in_rig()[2] - Eigen::Vector3d(0, 0, 0.02));

@@ -97,7 +97,7 @@ StoredPicture Shutter::expose(const Release& release, std::stop_token stop) {
   content.artist = release.artist;
   content.utc_ns = bench_->clock()->utc_ns();
   content.image_number = number;
-  content.temperature_c = bench_->behaviour().sensor_temperature_c;
+  content.temperature_c = bench_->behaviour().sensor_temperature_c + exposure.state.sensor_warming_k;
   return {file_name(number), content.width_px, content.height_px,
           std::make_shared<const std::vector<std::uint8_t>>(write_dng(content))};
 }
