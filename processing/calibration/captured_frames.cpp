@@ -53,6 +53,7 @@ Frame CapturedFrames::load(const FrameRecord& record) const {
   Frame frame = decode_frame_file(bytes, path);
   // What was asked of the camera, which reported the same in its own units: equal bit for bit over all its frames.
   frame.reported = record.applied;
+  frame.sensor_temperature_c = record.sensor_temperature_c;
   return frame;
 }
 
@@ -68,7 +69,11 @@ DarkLibrary CapturedFrames::master_darks(const LinearSensor& sensor) const {
     by_settings[{record.applied.exposure_s, record.applied.gain_db}].push_back(record);
   }
   DarkLibrary library;
-  for (const auto& [settings, records] : by_settings) library.add(make_master_dark(load(records), sensor));
+  for (const auto& [settings, records] : by_settings) {
+    for (const std::vector<Frame>& group : grouped_by_temperature(load(records))) {
+      library.add(make_master_dark(group, sensor));
+    }
+  }
   return library;
 }
 

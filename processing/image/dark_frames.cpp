@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 
 #include "drivers/error.h"
 
@@ -24,10 +26,28 @@ void check_equal(const std::vector<Frame>& frames) {
   for (const Frame& frame : frames) {
     const std::size_t pixels = static_cast<std::size_t>(frame.width_px) * static_cast<std::size_t>(frame.height_px);
     if (frame.width_px != frames[0].width_px || frame.height_px != frames[0].height_px ||
-        frame.bits != frames[0].bits || !(frame.reported == frames[0].reported) || frame.samples.size() != pixels) {
-      throw BadInput("dark frames", "frames of different size, bit depth or settings", "repetitions of one exposure");
+        frame.bits != frames[0].bits || frame.mosaic != frames[0].mosaic || !(frame.reported == frames[0].reported) ||
+        frame.samples.size() != pixels || pixels == 0) {
+      throw BadInput("dark frames", "frames of different size, bit depth, mosaic or settings",
+                     "repetitions of one exposure");
     }
   }
+}
+
+std::optional<double> mean_temperature_c(const std::vector<Frame>& frames) {
+  double sum = 0.0;
+  for (const Frame& frame : frames) {
+    if (!known_temperature_c(frame)) return std::nullopt;
+    sum += frame.sensor_temperature_c;
+  }
+  const double mean = sum / static_cast<double>(frames.size());
+  for (const Frame& frame : frames) {
+    if (std::abs(frame.sensor_temperature_c - mean) > kDarkTemperatureWindow_k) {
+      throw BadInput("dark frames", "one at " + std::to_string(frame.sensor_temperature_c) + " degrees Celsius, their mean " + std::to_string(mean),
+                     "repetitions at one temperature (within " + std::to_string(kDarkTemperatureWindow_k) + " K)");
+    }
+  }
+  return mean;
 }
 
 void average(const std::vector<Frame>& frames, MasterDark& dark) {
@@ -72,9 +92,17 @@ double pooled_variance(const std::vector<Frame>& frames, const MasterDark& dark,
 
 }  // namespace
 
+std::optional<double> known_temperature_c(const Frame& frame) {
+  if (frame.sensor_temperature_c == 0.0 || !std::isfinite(frame.sensor_temperature_c)) return std::nullopt;
+  return frame.sensor_temperature_c;
+}
+
 double MasterDark::variance_of_mean_dn2(std::size_t pixel, const LinearSensor& sensor) const {
-  const double excess_dn = std::max(0.0, static_cast<double>(mean_dn[pixel]) - median_dn);
-  return (pixel_variance_dn2 + excess_dn / sensor.electrons_per_dn) / repetitions;
+  const double excess_dn = std::max(0.0, static_cast<double>(mean_dn[pixel]) - median_dn) / scale;
+  const double plain = (pixel_variance_dn2 + excess_dn / sensor.electrons_per_dn) / repetitions;
+  if (scale_sigma == 0.0) return plain;
+  const double current_dn = (static_cast<double>(mean_dn[pixel]) - sensor.black_level_dn) / scale;
+  return plain * scale * scale + current_dn * current_dn * scale_sigma * scale_sigma;
 }
 
 MasterDark make_master_dark(const std::vector<Frame>& repetitions, const LinearSensor& sensor) {
@@ -83,6 +111,9 @@ MasterDark make_master_dark(const std::vector<Frame>& repetitions, const LinearS
   dark.settings = repetitions[0].reported;
   dark.width_px = repetitions[0].width_px;
   dark.height_px = repetitions[0].height_px;
+  dark.bits = repetitions[0].bits;
+  dark.mosaic = repetitions[0].mosaic;
+  dark.temperature_c = mean_temperature_c(repetitions);
   dark.repetitions = static_cast<int>(repetitions.size());
   average(repetitions, dark);
   flag_hot(dark, sensor);
@@ -90,14 +121,43 @@ MasterDark make_master_dark(const std::vector<Frame>& repetitions, const LinearS
   return dark;
 }
 
-const MasterDark& DarkLibrary::matching(const CameraSettings& settings, int width_px, int height_px) const {
-  for (const MasterDark& dark : darks_) {
-    if (dark.settings == settings && dark.width_px == width_px && dark.height_px == height_px) return dark;
+std::vector<std::vector<Frame>> grouped_by_temperature(std::vector<Frame> repetitions) {
+  const auto order_c = [](const Frame& f) { return known_temperature_c(f).value_or(-1e9); };
+  std::stable_sort(repetitions.begin(), repetitions.end(),
+                   [&](const Frame& a, const Frame& b) { return order_c(a) < order_c(b); });
+  std::vector<std::vector<Frame>> groups;
+  for (Frame& frame : repetitions) {
+    if (groups.empty() || order_c(frame) - order_c(groups.back().front()) > kDarkTemperatureWindow_k) groups.emplace_back();
+    groups.back().push_back(std::move(frame));
   }
+  return groups;
+}
+
+DarkMatch DarkLibrary::matching(const Frame& frame) const {
+  const std::optional<double> frame_c = known_temperature_c(frame);
+  DarkMatch best;
+  double best_gap_k = 0.0;
+  for (const MasterDark& dark : darks_) {
+    if (!(dark.settings == frame.reported) || dark.width_px != frame.width_px || dark.height_px != frame.height_px ||
+        dark.bits != frame.bits || dark.mosaic != frame.mosaic) {
+      continue;
+    }
+    const bool known = frame_c && dark.temperature_c;
+    // One of unknown temperature comes after all that are known.
+    const double gap_k = known ? std::abs(*frame_c - *dark.temperature_c) : std::numeric_limits<double>::max();
+    if (best.dark && gap_k >= best_gap_k) continue;
+    best_gap_k = gap_k;
+    best.dark = &dark;
+    best.temperature = !known                                 ? DarkMatch::Temperature::Unknown
+                       : gap_k <= kDarkTemperatureWindow_k ? DarkMatch::Temperature::Same
+                                                              : DarkMatch::Temperature::Drifted;
+  }
+  if (best.dark) return best;
   throw BadInput("dark frames",
-                 "none with exposure " + std::to_string(settings.exposure_s) + " s, gain " +
-                     std::to_string(settings.gain_db) + " dB, " + std::to_string(width_px) + "x" +
-                     std::to_string(height_px),
+                 "none with exposure " + std::to_string(frame.reported.exposure_s) + " s, gain " +
+                     std::to_string(frame.reported.gain_db) + " dB, " + std::to_string(frame.width_px) + "x" +
+                     std::to_string(frame.height_px) + ", " + std::to_string(frame.bits) + " bits, " +
+                     to_string(frame.mosaic),
                  "dark frames for every exposure time used");
 }
 

@@ -1,0 +1,298 @@
+#include "processing/image/fit_response.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "drivers/error.h"
+#include "processing/image/response_spline.h"
+
+namespace lumitexel {
+namespace {
+
+using Vector = ResponseSpline::Vector;
+using Matrix = Eigen::Matrix<double, ResponseSpline::kCoefficients, ResponseSpline::kCoefficients>;
+
+constexpr int kMostPixels = 12'000, kFewestPixels = 200, kMostIterations = 40;
+constexpr int kCandidates = 200'000;
+constexpr int kByObservation = 4;     // iterations in which the samples choose themselves, until the curve can
+constexpr double kClearSigmas = 4.0;  // of a prediction from clipping
+constexpr double kOutlierSigmas = 6.0;
+constexpr double kBendSigma = 3.0;    // prior on second differences of the log slope: a decade is 2.3
+constexpr double kConverged = 1e-6;
+constexpr double kWorstRelativeSigma = 0.05;
+constexpr int kPoints = 65;
+constexpr double kReference = 0.5;
+
+struct Sample {
+  double u, time_s;
+};
+struct Pixel {
+  std::vector<Sample> samples;  // codes in units of the range, over black
+  double rate;                  // linear value in units of the range, per second
+};
+
+struct Scaled {  // the sensor in units of its range
+  double range_dn, usable, shot, reads;
+  explicit Scaled(const LinearSensor& sensor) : range_dn(sensor.clip_dn - sensor.black_level_dn) {
+    usable = (sensor.usable_below_dn() - sensor.black_level_dn) / range_dn;
+    shot = 1.0 / (sensor.electrons_per_dn * range_dn);
+    reads = sensor.variance_dn2(0.0) / (range_dn * range_dn);
+  }
+};
+
+void check_bracket(const std::vector<Frame>& bracket) {
+  double shortest_s = 0.0, longest_s = 0.0;
+  for (const Frame& frame : bracket) {
+    const double exposure_s = frame.reported.exposure_s;
+    if (frame.samples.size() != bracket[0].samples.size()) {
+      throw BadInput("response", "frames of different size in one bracket", "exposures by one camera");
+    }
+    if (!(exposure_s > 0.0) || !std::isfinite(exposure_s)) {
+      throw BadInput("response", "an exposure of " + std::to_string(exposure_s) + " s", "a positive time");
+    }
+    shortest_s = shortest_s == 0.0 ? exposure_s : std::min(shortest_s, exposure_s);
+    longest_s = std::max(longest_s, exposure_s);
+  }
+  if (!(longest_s > shortest_s)) throw BadInput("response", "a bracket of one exposure time", "two that differ");
+}
+
+Pixel pixel_of(const std::vector<Frame>& bracket, std::size_t i, const LinearSensor& sensor, const Scaled& scaled) {
+  Pixel pixel{{}, 0.0};
+  double sum = 0.0, time_s = 0.0;
+  for (const Frame& frame : bracket) {
+    const double u = (frame.samples[i] - sensor.black_level_dn) / scaled.range_dn;
+    pixel.samples.push_back({u, frame.reported.exposure_s});
+    if (u >= scaled.usable) continue;
+    sum += u;
+    time_s += frame.reported.exposure_s;
+  }
+  pixel.rate = time_s > 0.0 ? sum / time_s : 0.0;
+  return pixel;
+}
+
+// Pixels of every brightness alike, so that the curve is known everywhere: a scene is mostly dark.
+std::vector<Pixel> chosen_pixels(const std::vector<std::vector<Frame>>& brackets, const LinearSensor& sensor,
+                                 const Scaled& scaled) {
+  std::map<int, std::vector<Pixel>> by_brightness;
+  std::size_t candidates = 0;
+  for (const std::vector<Frame>& bracket : brackets) {
+    check_bracket(bracket);
+    const std::size_t share = kCandidates / brackets.size() + 1;
+    const std::size_t stride = std::max<std::size_t>(1, bracket[0].samples.size() / share) | 1u;  // odd: all colours
+    for (std::size_t i = 0; i < bracket[0].samples.size(); i += stride) {
+      Pixel pixel = pixel_of(bracket, i, sensor, scaled);
+      if (!(pixel.rate > 0.0)) continue;
+      by_brightness[static_cast<int>(std::floor(4.0 * std::log2(pixel.rate)))].push_back(std::move(pixel));
+      ++candidates;
+    }
+  }
+  std::vector<Pixel> chosen;
+  if (candidates == 0) return chosen;
+  const std::size_t quota = kMostPixels / by_brightness.size() + 1;
+  for (auto& [brightness, pixels] : by_brightness) {
+    const std::size_t stride = (pixels.size() + quota - 1) / quota;
+    for (std::size_t i = 0; i < pixels.size(); i += stride) chosen.push_back(std::move(pixels[i]));
+  }
+  return chosen;
+}
+
+// The normal equations of the curve, every rate eliminated.
+struct Reduced {
+  Matrix normal = Matrix::Zero();
+  Vector right = Vector::Zero();
+  double chi_square = 0, samples = 0, lowest = 1, highest = 0;
+  int pixels = 0;
+};
+
+struct Linearised {
+  double residual, weight, by_rate, predicted;
+  Vector by_curve;
+};
+
+class Fit {
+ public:
+  Fit(std::vector<Pixel> pixels, const Scaled& sensor) : pixels_(std::move(pixels)), sensor_(sensor) {
+    coefficients_.setZero();
+  }
+
+  int run() {
+    for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
+      const ResponseSpline curve(coefficients_);
+      const bool by_model = iteration > kByObservation;
+      for (Pixel& pixel : pixels_) improve_rate(curve, by_model, pixel);
+      reduced_ = Reduced{};
+      for (const Pixel& pixel : pixels_) add(curve, by_model, pixel);
+      if (reduced_.pixels < kFewestPixels) return 0;
+      Vector step = regular().ldlt().solve(reduced_.right - prior() * coefficients_);
+      if (!step.allFinite()) return 0;
+      step *= std::min(1.0, 1.0 / std::max(1e-300, step.cwiseAbs().maxCoeff()));
+      coefficients_ += step;
+      fix_scale();
+      step.array() -= step.mean();
+      if (by_model && step.cwiseAbs().maxCoeff() < kConverged) return iteration;
+    }
+    return 0;
+  }
+
+  const Vector& coefficients() const { return coefficients_; }
+  const Reduced& reduced() const { return reduced_; }
+  Matrix covariance() const { return regular().inverse(); }
+
+ private:
+  static Matrix prior() {
+    Matrix bends = Matrix::Zero();
+    for (int k = 0; k + 2 < ResponseSpline::kCoefficients; ++k) {
+      Vector second = Vector::Zero();
+      second[k] = second[k + 2] = 1.0;
+      second[k + 1] = -2.0;
+      bends += second * second.transpose() / (kBendSigma * kBendSigma);
+    }
+    return bends;
+  }
+  // The scale is nothing that the samples know: whatever is added here changes it alone.
+  Matrix regular() const { return reduced_.normal + prior() + Matrix::Constant(reduced_.normal.trace() / 100.0 + 1.0); }
+
+  void fix_scale() {
+    const double factor = kReference / ResponseSpline(coefficients_).linear(kReference);
+    coefficients_.array() += std::log(factor);
+    for (Pixel& pixel : pixels_) pixel.rate *= factor;
+  }
+
+  // False if the sample does not count.
+  bool linearise(const ResponseSpline& curve, const Sample& sample, double rate, bool by_model, Linearised& at) const {
+    if (!by_model && sample.u >= sensor_.usable) return false;
+    const double light = rate * sample.time_s;
+    at.predicted = curve.inverse(light);
+    const double slope = curve.slope(at.predicted);
+    const double variance = sensor_.reads + sensor_.shot * std::max(light, 0.0) / (slope * slope);
+    at.residual = sample.u - at.predicted;
+    if (by_model && (at.predicted > sensor_.usable - kClearSigmas * std::sqrt(variance) ||
+                     at.residual * at.residual > kOutlierSigmas * kOutlierSigmas * variance)) {
+      return false;
+    }
+    at.weight = 1.0 / variance;
+    at.by_rate = sample.time_s / slope;
+    at.by_curve = -curve.linear_gradient(at.predicted) / slope;
+    return true;
+  }
+
+  void improve_rate(const ResponseSpline& curve, bool by_model, Pixel& pixel) const {
+    for (int step = 0; step < 3; ++step) {
+      double normal = 0.0, right = 0.0;
+      Linearised at;
+      for (const Sample& sample : pixel.samples) {
+        if (!linearise(curve, sample, pixel.rate, by_model, at)) continue;
+        normal += at.weight * at.by_rate * at.by_rate;
+        right += at.weight * at.by_rate * at.residual;
+      }
+      if (normal > 0.0) pixel.rate = std::max(pixel.rate + right / normal, 1e-3 * pixel.rate);
+    }
+  }
+
+  void add(const ResponseSpline& curve, bool by_model, const Pixel& pixel) {
+    Matrix own = Matrix::Zero();
+    Vector right = Vector::Zero(), mixed = Vector::Zero();
+    double normal = 0.0, rate_right = 0.0, chi_square = 0.0;
+    int count = 0;
+    Linearised at;
+    for (const Sample& sample : pixel.samples) {
+      if (!linearise(curve, sample, pixel.rate, by_model, at)) continue;
+      own += at.weight * at.by_curve * at.by_curve.transpose();
+      right += at.weight * at.by_curve * at.residual;
+      mixed += at.weight * at.by_rate * at.by_curve;
+      normal += at.weight * at.by_rate * at.by_rate;
+      rate_right += at.weight * at.by_rate * at.residual;
+      chi_square += at.weight * at.residual * at.residual;
+      reduced_.lowest = std::min(reduced_.lowest, at.predicted);
+      reduced_.highest = std::max(reduced_.highest, at.predicted);
+      ++count;
+    }
+    if (count < 2) return;
+    reduced_.normal += own - mixed * mixed.transpose() / normal;
+    reduced_.right += right - mixed * (rate_right / normal);
+    reduced_.chi_square += chi_square;
+    reduced_.samples += count;
+    ++reduced_.pixels;
+  }
+
+  std::vector<Pixel> pixels_;
+  Scaled sensor_;
+  Vector coefficients_;
+  Reduced reduced_;
+};
+
+// Of chi-square with n degrees of freedom, exceeded with 1 %, by Wilson and Hilferty.
+double rare_chi_square(int n) {
+  const double spread = 2.0 / (9.0 * n);
+  return n * std::pow(1.0 - spread + 2.326 * std::sqrt(spread), 3);
+}
+
+void state_points(const Fit& fit, const LinearSensor& sensor, const Scaled& scaled, ResponseFit& result) {
+  const ResponseSpline curve(fit.coefficients());
+  const Matrix covariance = fit.covariance() * std::max(1.0, result.residual_scale * result.residual_scale);
+  const Vector at_reference = curve.linear_gradient(kReference) / curve.linear(kReference);
+  double sum = 0.0, weights = 0.0;
+  for (int i = 0; i < kPoints; ++i) {
+    const double u = std::max(fit.reduced().lowest, 0.0) +
+                     (fit.reduced().highest - std::max(fit.reduced().lowest, 0.0)) * std::pow((i + 1.0) / kPoints, 2);
+    const Vector slope = curve.linear_gradient(u) / curve.linear(u) - at_reference;
+    const double sigma = std::sqrt(slope.dot(covariance * slope));
+    result.points.push_back({sensor.black_level_dn + u * scaled.range_dn, curve.linear(u) * scaled.range_dn, sigma});
+    const double weight = 1.0 / (sigma * sigma + 1e-8);
+    sum += weight * std::log(curve.linear(u) / u);
+    weights += weight;
+  }
+  // Against the straight line that fits best; points that are not known to a negligible part say nothing here.
+  for (const ResponsePoint& point : result.points) {
+    const double straight = (point.code_dn - sensor.black_level_dn) * std::exp(sum / weights);
+    const double departure = std::abs(point.linear_dn / straight - 1.0);
+    if (departure > 2.0 * point.relative_sigma) result.largest_departure = std::max(result.largest_departure, departure);
+  }
+}
+
+ResponseCurve tabulated(const Fit& fit, const LinearSensor& sensor, const Scaled& scaled) {
+  constexpr int kNodes = 512;
+  const ResponseSpline curve(fit.coefficients());
+  std::vector<double> codes, linears;
+  for (int i = 0; i <= kNodes; ++i) {
+    const double u = std::pow(static_cast<double>(i) / kNodes, 2);
+    codes.push_back(sensor.black_level_dn + u * scaled.range_dn);
+    linears.push_back(curve.linear(u) * scaled.range_dn);
+  }
+  return ResponseCurve(std::move(codes), std::move(linears));
+}
+
+}  // namespace
+
+ResponseFit fit_response(const std::vector<std::vector<Frame>>& brackets, const LinearSensor& sensor) {
+  check_sensor(sensor);
+  if (brackets.empty()) throw BadInput("response", "no bracket", "at least one");
+  const Scaled scaled(sensor);
+  Fit fit(chosen_pixels(brackets, sensor, scaled), scaled);
+  ResponseFit result;
+  result.iterations = fit.run();
+  result.pixels = fit.reduced().pixels;
+  if (result.iterations == 0) {
+    result.why = result.pixels < kFewestPixels ? "too few pixels with two usable exposures" : "no convergence";
+    return result;
+  }
+  const Reduced& reduced = fit.reduced();
+  const double freedoms = reduced.samples - reduced.pixels - ResponseSpline::kCoefficients + 1;
+  result.residual_scale = std::sqrt(reduced.chi_square / std::max(1.0, freedoms));
+  result.freedoms = ResponseSpline::kCoefficients - 1;
+  result.chi_square = fit.coefficients().dot(reduced.normal * fit.coefficients()) /
+                      std::max(1.0, result.residual_scale * result.residual_scale);
+  state_points(fit, sensor, scaled, result);
+  result.determined = result.points[kPoints / 4].relative_sigma < kWorstRelativeSigma &&
+                      result.points.back().relative_sigma < kWorstRelativeSigma;
+  if (!result.determined) {
+    result.why = "the exposures overlap too little to know the curve to 5 %";
+  } else if (result.chi_square > rare_chi_square(result.freedoms) && result.largest_departure > kNegligibleCurvature) {
+    result.curve = tabulated(fit, sensor, scaled);
+  }
+  return result;
+}
+
+}  // namespace lumitexel

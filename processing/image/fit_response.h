@@ -1,0 +1,49 @@
+// The response of a sensor that is not linear, recovered from brackets with known exposure times.
+//
+// sample = black + F(E) + noise with E = rate * exposure; its inverse L is what is looked for. OpenCV has Debevec and
+// Malik's (1997) and Robertson's (1999) methods for 8 bits, with a table entry for every code and no noise model;
+// tests/bench/response_table says how far they come. Here: maximum likelihood in the samples, every pixel's rate
+// eliminated, with the sensor's noise (shot noise goes with E, read noise and rounding with the code). The curve is
+//     L(u) = integral from 0 to u of exp(q),   u = (code - black) / (clip - black),
+// so that it cannot fall; q is a cubic spline. Its constant is the scale, which exposures cannot tell: L = u at u = 1/2.
+// Which samples count is decided by what the model predicts for them, not by what they are.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "processing/image/dark_frames.h"
+#include "processing/image/linear_sensor.h"
+#include "processing/image/response_curve.h"
+
+namespace lumitexel {
+
+struct ResponsePoint {
+  double code_dn = 0, linear_dn = 0;
+  double relative_sigma = 0;  // of linear_dn, the scale fixed at half the range
+};
+
+struct ResponseFit {
+  // The curve, if the frames need one: its departure from a straight line is more than their noise explains (1 % error
+  // of the first kind) and more than kNegligibleCurvature somewhere. Empty for a linear sensor.
+  std::optional<ResponseCurve> curve;
+  bool determined = false;          // the fit converged on enough samples; else `why` says what was lacking
+  std::string why;
+  std::vector<ResponsePoint> points;  // over the range that the samples cover
+  double chi_square = 0;            // Wald's statistic of the straight line; freedoms: how many it has
+  int freedoms = 0;
+  double largest_departure = 0;     // from a straight line through the origin, relative, over `points`
+  double residual_scale = 0;        // root of the residuals' reduced chi-square; 1 if the noise model is right
+  int pixels = 0, iterations = 0;
+};
+
+inline constexpr double kNegligibleCurvature = 0.001;
+
+// brackets: each of one still scene at two or more exposures whose times differ; black is subtracted as sensor.black_level
+// says (dark current belongs to the light; keep exposures short). sensor: clip_dn bounds the codes; its noise in code
+// units. Throws BadInput for frames that differ in size, exposures that are not positive, or a sensor that is none.
+ResponseFit fit_response(const std::vector<std::vector<Frame>>& brackets, const LinearSensor& sensor);
+
+}  // namespace lumitexel

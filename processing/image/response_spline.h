@@ -1,0 +1,29 @@
+// A monotone curve over [0, 1]: the integral of the exponential of a cubic spline, tabulated with its derivatives.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace lumitexel {
+
+class ResponseSpline {
+ public:
+  static constexpr int kCoefficients = 11;
+  using Vector = Eigen::Matrix<double, kCoefficients, 1>;
+
+  explicit ResponseSpline(const Vector& coefficients);
+
+  double linear(double u) const;          // L(u); continued straight outside [0, 1]
+  double slope(double u) const;           // dL/du, positive
+  double inverse(double linear) const;    // u
+  Vector linear_gradient(double u) const; // dL/dc
+  // The most that it is tabulated for.
+  double highest() const { return values_.back(); }
+
+ private:
+  static constexpr int kCells = 512;
+  std::vector<double> values_, slopes_;
+  std::vector<Vector> gradients_;
+};
+
+}  // namespace lumitexel

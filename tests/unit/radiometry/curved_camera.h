@@ -1,0 +1,77 @@
+// Frames of a sensor whose response is a curve, of a scene that spans its range.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "processing/image/linear_sensor.h"
+
+namespace lumitexel {
+
+// From light to code, both in units of the range: rises from 0 at 0 to 1 at 1.
+struct CurvedResponse {
+  std::string name;
+  std::function<double(double)> code, light;  // each other's inverse
+};
+
+inline CurvedResponse straight() {
+  return {"linear", [](double x) { return x; }, [](double u) { return u; }};
+}
+inline CurvedResponse gamma_response(double gamma) {
+  return {"gamma " + std::to_string(gamma).substr(0, 4), [gamma](double x) { return std::pow(std::max(x, 0.0), 1.0 / gamma); },
+          [gamma](double u) { return std::pow(std::max(u, 0.0), gamma); }};
+}
+inline CurvedResponse srgb_response() {
+  return {"sRGB", [](double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055; },
+          [](double u) { return u <= 0.04045 ? u / 12.92 : std::pow((u + 0.055) / 1.055, 2.4); }};
+}
+// A well that fills more slowly the fuller it is: k of the slope is lost at the end.
+inline CurvedResponse compressive(double k) {
+  return {"compressive " + std::to_string(k).substr(0, 4), [k](double x) { return (1.0 + 0.5 * k) * x / (1.0 + 0.5 * k * x); },
+          [k](double u) { return u / (1.0 + 0.5 * k - 0.5 * k * u); }};
+}
+
+// sensor: noise in codes; shot noise of electrons_per_dn * (clip - black) electrons at the range's end.
+inline std::vector<Frame> curved_bracket(const CurvedResponse& response, const LinearSensor& sensor, int bits,
+                                         const std::vector<double>& exposures_s, std::uint64_t seed, int pixels = 40'000) {
+  std::mt19937_64 random(seed);
+  const double range_dn = sensor.clip_dn - sensor.black_level_dn, top = std::ldexp(1.0, bits) - 1.0;
+  std::uniform_real_distribution<double> decades(-2.2, 0.6);
+  std::normal_distribution<double> normal;
+  double middle_s = 1.0;
+  for (const double exposure_s : exposures_s) middle_s *= std::pow(exposure_s, 1.0 / static_cast<double>(exposures_s.size()));
+  std::vector<double> rates;
+  for (int i = 0; i < pixels; ++i) rates.push_back(std::pow(10.0, decades(random)) / middle_s);
+  std::vector<Frame> frames;
+  for (const double exposure_s : exposures_s) {
+    Frame frame;
+    frame.width_px = pixels / 100;
+    frame.height_px = 100;
+    frame.bits = bits;
+    frame.reported.exposure_s = exposure_s;
+    for (const double rate : rates) {
+      const double electrons = rate * exposure_s * sensor.electrons_per_dn * range_dn;
+      const double light = (electrons + std::sqrt(electrons) * normal(random)) / (sensor.electrons_per_dn * range_dn);
+      const double code = sensor.black_level_dn + range_dn * response.code(std::clamp(light, 0.0, 1.0)) + sensor.read_noise_dn * normal(random);
+      frame.samples.push_back(static_cast<std::uint16_t>(std::clamp(std::round(code), 0.0, top)));
+    }
+    frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
+inline LinearSensor sensor_of_bits(int bits) {
+  const double top = std::ldexp(1.0, bits) - 1.0;
+  LinearSensor sensor;
+  sensor.black_level_dn = bits == 8 ? 0.0 : top / 64.0;
+  sensor.electrons_per_dn = 18000.0 / (top - sensor.black_level_dn);
+  sensor.read_noise_dn = bits == 8 ? 0.3 : 4.0 / sensor.electrons_per_dn;
+  sensor.clip_dn = top;
+  return sensor;
+}
+
+}  // namespace lumitexel
