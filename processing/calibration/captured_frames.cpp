@@ -44,6 +44,18 @@ std::vector<FrameRecord> CapturedFrames::of(ShotKind kind, const std::string& vi
   return records;
 }
 
+bool CapturedFrames::has(ShotKind kind) const {
+  return std::any_of(taken_.begin(), taken_.end(), [&](const Taken& taken) { return taken.shot.kind == kind; });
+}
+
+std::vector<int> CapturedFrames::indices_of(ShotKind kind) const {
+  std::vector<int> indices;
+  for (const Taken& taken : taken_) {
+    if (taken.shot.kind == kind && taken.shot.view.empty()) indices.push_back(taken.shot.index);
+  }
+  return indices;
+}
+
 Frame CapturedFrames::load(const FrameRecord& record) const {
   const std::string path = session_.frame_path(record).string();
   std::ifstream file(path, std::ios::binary);

@@ -19,6 +19,9 @@ class CapturedFrames {
   // The frames of a kind (and view; "" for gray card and darks), in the order of their indices. Throws BadInput if
   // there are none.
   std::vector<FrameRecord> of(ShotKind kind, const std::string& view = "") const;
+  bool has(ShotKind kind) const;
+  // The shots' indices (Shot::index), in the order of of(kind).
+  std::vector<int> indices_of(ShotKind kind) const;
   // Pixels and reported settings. Throws Corrupt if the file is not what was committed.
   Frame load(const FrameRecord& record) const;
   std::vector<Frame> load(const std::vector<FrameRecord>& records) const;

@@ -2,141 +2,187 @@
 
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
+#include <mutex>
 
 #include "drivers/error.h"
 #include "processing/calibration/calibrated_views_file.h"
 #include "processing/calibration/captured_inputs.h"
-#include "processing/calibration/light/gray_card.h"
 #include "processing/calibration/pose/object_mask.h"
+#include "processing/calibration/session_card.h"
+#include "processing/calibration/session_lamp.h"
+#include "processing/calibration/session_lens.h"
 #include "processing/calibration/session_lights.h"
-#include "processing/calibration/light/sphere_shots.h"
+#include "processing/calibration/session_poses.h"
+#include "processing/calibration/session_sensor.h"
+#include "processing/calibration/session_tags.h"
 #include "processing/image/demosaic.h"
-#include "processing/image/hdr_merge.h"
 #include "rig/sha256.h"
 
 namespace lumitexel {
 namespace {
 
 // Part of the key: change it with anything that changes what a calibration gives.
-constexpr const char* kMethod = "captured calibration 2";
-constexpr int kMaskMarginPx = 8;  // a coarse mesh's error and the pose's, in pixels, with room
+constexpr const char* kMethod = "captured calibration 3";
+// Room for the mask about the mesh's picture: a coarse mesh's error, and that of a pose that nobody measured.
+constexpr int kRegisteredMargin_px = 4, kNominalMargin_px = 8;
 
-struct Scale {
-  std::vector<double> intensity;
-  double sigma = 0;  // relative
+double seconds_between(const FrameRecord& first, const FrameRecord& later) {
+  return 1e-9 * static_cast<double>(later.utc_ns - first.utc_ns);
+}
+
+const FrameRecord& middle_of(const std::vector<FrameRecord>& bracket) { return bracket[bracket.size() / 2]; }
+
+// One session's calibration, step by step; each step's result is what the next ones need.
+class SessionCalibration {
+ public:
+  SessionCalibration(const SessionStore& session, const CapturedInputs& in, std::filesystem::path directory,
+                     const CalibrationOptions& options, Progress& progress)
+      : in_(in), directory_(std::move(directory)), options_(options), progress_(progress), frames_(session),
+        records_(frames_of_views(frames_, in.plan)),
+        reader_(measure_sensor(frames_, in, records_, options, summary_, progress)),
+        lens_(measure_lens(frames_, in, reader_, options, directory_, summary_, progress)) {
+    if (lens_.vignetting) reader_.take_out(*lens_.vignetting);
+    tags_ = detect_session_tags(reader_, records_, in.rig.tags, progress);
+    poses_ = measure_poses(in, records_, reader_, lens_, tags_, options, summary_, progress);
+  }
+
+  std::pair<CalibratedSession, CalibrationSummary> run() {
+    const SessionLights lights = measure_lights_of_views();
+    const LampPattern pattern = measure_lamp_pattern(frames_, in_, reader_, lens_, lights, options_, summary_);
+    const SessionCard card(in_, lens_.camera, tags_, options_);
+    summary_.lamp.card_source = card.posed() ? "tags" : "rig description";
+    const TimedReading card_bracket = read_card_bracket(card, lights);
+    make_views(lights);
+    const std::vector<TimedReading> readings = make_photographs(card, lights);
+    give_intensity(measure_lamp(in_, lights, pattern, readings, card_bracket, options_, summary_));
+    calibrated_.channels = mosaic_channels(in_.rig.camera.limits.mosaic);
+    return {std::move(calibrated_), std::move(summary_)};
+  }
+
+ private:
+  Eigen::Isometry3d rig_from_world(std::size_t v) const {
+    return in_.rig.camera.camera_from_rig.inverse() * poses_.camera_from_world[v];
+  }
+
+  SessionLights measure_lights_of_views() {
+    std::vector<SphereShots> shots;
+    for (const ViewFrames& view : records_) shots.push_back(view.spheres);
+    const LightSolution spheres = measure_lights(reader_, shots, lens_.camera, in_.rig, progress_);
+    SessionLights lights = align_lights(spheres, records_, in_.plan, in_.rig, in_.rig.camera.camera_from_rig);
+    summary_.sphere_residual_px = spheres.residual_px;
+    summary_.sphere_sigma_scale = spheres.sigma_scale;
+    summary_.arm_scatter_m = lights.arm.scatter_m();
+    summary_.arm_residual_m = lights.arm.residual_m();
+    return lights;
+  }
+
+  TimedReading read_card_bracket(const SessionCard& card, const SessionLights& lights) const {
+    const std::vector<FrameRecord> bracket = frames_.of(ShotKind::GrayCard);
+    const ArmPrediction light = lights.arm.predict(bracket[0].light_azimuth_deg, bracket[0].light_elevation_deg);
+    TimedReading timed{seconds_between(records_[0].bracket[0], middle_of(bracket)), light.position_in_rig,
+                       card.read(reader_.read(bracket), light)};
+    if (!timed.reading) {
+      throw BadInput("gray card", "not usable in its own bracket: out of sight, turned away, dark or saturated",
+                     "a card in the camera's sight that faces camera and light, and exposures that suit it");
+    }
+    return timed;
+  }
+
+  // Cameras, poses and lights; intensities follow once all photographs have shown the card.
+  void make_views(const SessionLights& lights) {
+    for (std::size_t v = 0; v < records_.size(); ++v) {
+      const Eigen::Isometry3d world_from_rig = rig_from_world(v).inverse();
+      LightSummary light = lights.summaries[v];
+      light.position_in_world = world_from_rig * light.position_in_world;
+      if (light.spheres_alone_sigma_m > 0) light.spheres_alone_in_world = world_from_rig * light.spheres_alone_in_world;
+      View& view = calibrated_.views.emplace_back();
+      view.name = in_.plan.views[v].name;
+      view.heldout = in_.plan.views[v].heldout;
+      view.camera = lens_.camera;
+      view.camera_from_world = poses_.camera_from_world[v];
+      view.light = {Light::Type::Point, light.position_in_world, {}, light.sigma_m};
+      view.photograph = directory_ / (view.name + ".exr");
+      summary_.lights.push_back(std::move(light));
+    }
+  }
+
+  // Writes every view's photograph and reads the card in it on the way.
+  std::vector<TimedReading> make_photographs(const SessionCard& card, const SessionLights& lights) {
+    std::vector<TimedReading> readings(records_.size());
+    std::atomic<int> done{0}, without_silhouette{0};
+    progress_.begin("radiance", static_cast<std::int64_t>(records_.size()), "views");
+    tbb::parallel_for(std::size_t{0}, records_.size(), [&](std::size_t v) {
+      const MosaicRadiance merged = reader_.read(records_[v].bracket);
+      note_darks(merged);
+      readings[v] = {seconds_between(records_[0].bracket[0], middle_of(records_[v].bracket)),
+                     lights.in_rig[v].position_in_rig, card.read(merged, lights.in_rig[v])};
+      if (!write_photograph(merged, records_[v], calibrated_.views[v])) ++without_silhouette;
+      progress_.update(++done);
+    });
+    summary_.views_without_silhouette = without_silhouette;
+    return readings;
+  }
+
+  // True if the silhouette told the mask.
+  bool write_photograph(const MosaicRadiance& merged, const ViewFrames& records, const View& view) const {
+    RadianceImage photograph = demosaic(merged);
+    const ObjectMask mask = find_object(reader_.read(records.silhouette), in_.mesh, view.camera, view.camera_from_world,
+                                        poses_.registered ? kRegisteredMargin_px : kNominalMargin_px);
+    for (std::size_t i = 0; i < photograph.flags.size(); ++i) {
+      if (!mask.inside[i]) photograph.flags[i] |= kPixelOutside;
+    }
+    write_radiance_image(view.photograph, photograph);
+    return mask.from_silhouette;
+  }
+
+  void note_darks(const MosaicRadiance& merged) {
+    const std::lock_guard lock(noting_);
+    SensorSummary& sensor = summary_.sensor;
+    sensor.brackets_with_drifted_darks += merged.darks_drifted;
+    if (!merged.dark_scale.needed) return;
+    ++sensor.brackets_with_scaled_darks;
+    const double scale = merged.dark_scale.scale;
+    sensor.least_dark_scale = std::min(sensor.least_dark_scale.value_or(scale), scale);
+    sensor.largest_dark_scale = std::max(sensor.largest_dark_scale.value_or(scale), scale);
+  }
+
+  void give_intensity(const SessionLamp& lamp) {
+    for (std::size_t v = 0; v < calibrated_.views.size(); ++v) {
+      Light& light = calibrated_.views[v].light;
+      light.intensity = lamp.intensity[v];
+      light.pattern = lamp.pattern;
+      light.lamp_from_world = lamp.lamp_from_rig[v] * rig_from_world(v).linear();
+    }
+    calibrated_.gray_card_scale_sigma = lamp.scale_sigma;
+  }
+
+  const CapturedInputs& in_;
+  std::filesystem::path directory_;
+  const CalibrationOptions& options_;
+  Progress& progress_;
+  CalibrationSummary summary_;
+  CapturedFrames frames_;
+  std::vector<ViewFrames> records_;
+  RadianceReader reader_;
+  SessionLens lens_;
+  std::vector<std::vector<DetectedTag>> tags_;
+  SessionPoses poses_;
+  CalibratedSession calibrated_;
+  std::mutex noting_;
 };
-
-Scale absolute_scale(const CapturedInputs& in, const CapturedFrames& frames, const DarkLibrary& darks,
-                     const SessionLights& lights, CalibrationSummary& summary) {
-  const std::vector<FrameRecord> bracket = frames.of(ShotKind::GrayCard);
-  const ArmPrediction light = lights.arm.predict(bracket[0].light_azimuth_deg, bracket[0].light_elevation_deg);
-  const MosaicRadiance card = merge_bracket(frames.load(bracket), darks, in.nominal_sensor);
-  const GrayCardIntensity measured =
-      measure_gray_card(card, in.nominal_camera, in.rig.camera.camera_from_rig, in.rig.gray_card, light.position_in_rig);
-  Scale scale{measured.intensity, *std::max_element(measured.relative_sigma.begin(), measured.relative_sigma.end())};
-  // Intensity goes with the distance squared.
-  const double distance_m = (light.position_in_rig - in.rig.gray_card.centre_in_rig).norm();
-  scale.sigma =
-      std::hypot(scale.sigma, 2.0 * std::hypot(per_axis_sigma(light.covariance), lights.shared_sigma_m) / distance_m);
-  summary.intensity = measured.intensity;
-  summary.gray_card_pixel_scatter = measured.pixel_scatter;
-  summary.scale_sigma = scale.sigma;
-  return scale;
-}
-
-void apply_mask(const ObjectMask& mask, RadianceImage& image) {
-  for (std::size_t i = 0; i < image.flags.size(); ++i) {
-    if (!mask.inside[i]) image.flags[i] |= kPixelOutside;
-  }
-}
-
-// The view's photograph, written; true if the silhouette told the mask.
-bool make_photograph(const CapturedInputs& in, const CapturedFrames& frames, const DarkLibrary& darks,
-                     const ViewFrames& records, const View& view) {
-  RadianceImage photograph = demosaic(merge_bracket(frames.load(records.bracket), darks, in.nominal_sensor));
-  const ObjectMask mask = find_object(merge_bracket({frames.load(records.silhouette)}, darks, in.nominal_sensor), in.mesh,
-                                      in.nominal_camera, view.camera_from_world, kMaskMarginPx);
-  apply_mask(mask, photograph);
-  write_radiance_image(view.photograph, photograph);
-  return mask.from_silhouette;
-}
-
-std::vector<View> make_views(const CapturedInputs& in, const std::vector<ViewFrames>& frames,
-                             const std::vector<LightSummary>& lights, const Scale& scale,
-                             const std::filesystem::path& directory) {
-  std::vector<View> views;
-  for (std::size_t v = 0; v < frames.size(); ++v) {
-    View view;
-    view.name = in.plan.views[v].name;
-    view.heldout = in.plan.views[v].heldout;
-    view.camera = in.nominal_camera;
-    view.camera_from_world =
-        in.rig.camera.camera_from_rig * in.rig.turntable.rig_from_table(frames[v].bracket[0].turntable_deg);
-    view.light = {Light::Type::Point, lights[v].position_in_world, scale.intensity, lights[v].sigma_m};
-    view.photograph = directory / (view.name + ".exr");
-    views.push_back(std::move(view));
-  }
-  return views;
-}
-
-std::pair<CalibratedSession, CalibrationSummary> measure(const SessionStore& session, const CapturedInputs& in,
-                                                         const std::filesystem::path& directory, Progress& progress) {
-  const CapturedFrames frames(session);
-  const std::vector<ViewFrames> records = frames_of_views(frames, in.plan);
-  std::pair<CalibratedSession, CalibrationSummary> result;
-  auto& [calibrated, summary] = result;
-  progress.begin("dark frames", 1, "sets");
-  const DarkLibrary darks = frames.master_darks(in.nominal_sensor);
-  for (const MasterDark& dark : darks.all()) summary.hot_pixels = std::max(summary.hot_pixels, dark.hot_count);
-  progress.update(1);
-
-  std::vector<SphereShots> sphere_shots;
-  for (const ViewFrames& view : records) sphere_shots.push_back(view.spheres);
-  const Eigen::Isometry3d& camera_from_rig = in.rig.camera.camera_from_rig;
-  const SessionLights lights = align_lights(
-      measure_lights(frames, sphere_shots, darks, in.nominal_sensor, in.nominal_camera, in.rig, progress), records,
-      in.plan, in.rig, camera_from_rig);
-  summary.sphere_residual_px = lights.spheres.residual_px;
-  summary.sphere_sigma_scale = lights.spheres.sigma_scale;
-  summary.arm_scatter_m = lights.arm.scatter_m();
-  summary.arm_residual_m = lights.arm.residual_m();
-  for (std::size_t v = 0; v < records.size(); ++v) {
-    const Eigen::Isometry3d world_from_rig =
-        in.rig.turntable.rig_from_table(records[v].spheres.point.turntable_deg).inverse();
-    LightSummary light = lights.summaries[v];
-    light.position_in_world = world_from_rig * light.position_in_world;
-    if (light.spheres_alone_sigma_m > 0) light.spheres_alone_in_world = world_from_rig * light.spheres_alone_in_world;
-    summary.lights.push_back(std::move(light));
-  }
-
-  const Scale scale = absolute_scale(in, frames, darks, lights, summary);
-  calibrated.gray_card_scale_sigma = scale.sigma;
-  calibrated.channels = mosaic_channels(in.rig.camera.limits.mosaic);
-  calibrated.views = make_views(in, records, summary.lights, scale, directory);
-  progress.begin("radiance", static_cast<std::int64_t>(records.size()), "views");
-  std::atomic<int> done{0}, without_silhouette{0};
-  tbb::parallel_for(std::size_t{0}, records.size(), [&](std::size_t v) {
-    if (!make_photograph(in, frames, darks, records[v], calibrated.views[v])) ++without_silhouette;
-    progress.update(++done);
-  });
-  summary.views_without_silhouette = without_silhouette;
-  return result;
-}
 
 }  // namespace
 
 std::pair<CalibratedSession, CalibrationSummary> calibrate_captured(const SessionStore& session, Progress& progress,
-                                                                       const CalibrationOptions& options) {
+                                                                    const CalibrationOptions& options) {
   CapturedInputs in = read_captured_inputs(session);
   const std::string key = sha256_hex(session.content_sha256() + kMethod + options.key());
   const std::filesystem::path directory = session.derived_directory() / "calibrated" / key;
   auto result = read_calibrated_views(directory);
   if (!result) {
     std::filesystem::create_directories(directory);
-    result = measure(session, in, directory, progress);
+    result = SessionCalibration(session, in, directory, options, progress).run();
     result->first.key = key;
     write_calibrated_views(directory, result->first, result->second);
   }

@@ -22,8 +22,7 @@ struct SensorModel {
 // Thread-safe. Keeps a reference to the frames.
 class RadianceReader {
  public:
-  // Throws BadInput if there are no darks.
-  RadianceReader(const CapturedFrames& frames, SensorModel sensor);
+  RadianceReader(const CapturedFrames& frames, DarkLibrary darks, SensorModel sensor);
 
   // The falloff that every shot read from now on is freed of; none at first.
   void take_out(const Vignetting& vignetting) { vignetting_ = vignetting; }

@@ -1,0 +1,29 @@
+// The lens of a captured session: from its own board shots and flat fields, as far as it has any.
+#pragma once
+
+#include <map>
+#include <optional>
+
+#include "processing/calibration/calibration_options.h"
+#include "processing/calibration/calibration_summary.h"
+#include "processing/calibration/captured_inputs.h"
+#include "processing/calibration/lens/lens_calibration.h"
+#include "processing/calibration/lens/vignetting.h"
+#include "processing/calibration/radiance_reader.h"
+#include "rig/progress.h"
+
+namespace lumitexel {
+
+struct SessionLens {
+  CameraModel camera;
+  std::optional<LensMatrix> covariance;     // none: the rig's description, whose error nobody stated
+  std::optional<Vignetting> vignetting;     // only if the flats ask for it
+  std::map<int, Eigen::Isometry3d> camera_from_board;  // by placement, of the boards that fit
+};
+
+// Fills in summary.lens and writes lens_coverage.png and vignetting.png into `directory` where there is something to show.
+SessionLens measure_lens(const CapturedFrames& frames, const CapturedInputs& in, const RadianceReader& reader,
+                         const CalibrationOptions& options, const std::filesystem::path& directory,
+                         CalibrationSummary& summary, Progress& progress);
+
+}  // namespace lumitexel

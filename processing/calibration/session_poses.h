@@ -1,0 +1,29 @@
+// Where the mesh stands before the camera in every view of a captured session.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "processing/calibration/calibration_options.h"
+#include "processing/calibration/calibration_summary.h"
+#include "processing/calibration/captured_inputs.h"
+#include "processing/calibration/lens/tag_detection.h"
+#include "processing/calibration/radiance_reader.h"
+#include "processing/calibration/session_lens.h"
+#include "rig/progress.h"
+
+namespace lumitexel {
+
+struct SessionPoses {
+  std::vector<Eigen::Isometry3d> camera_from_world;  // by view; world: the mesh's frame
+  bool registered = false;                           // false: as the rig's description has it
+};
+
+// The mesh registered to all silhouettes and the table's tags at once. The rig's description stays where the silhouettes
+// do not determine the poses (symmetric objects) or the registration does not come to an end; summary.pose_problem then
+// says why. Fills in summary.poses.
+SessionPoses measure_poses(const CapturedInputs& in, const std::vector<ViewFrames>& views, const RadianceReader& reader,
+                           const SessionLens& lens, const std::vector<std::vector<DetectedTag>>& tags,
+                           const CalibrationOptions& options, CalibrationSummary& summary, Progress& progress);
+
+}  // namespace lumitexel
