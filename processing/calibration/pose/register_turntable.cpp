@@ -408,7 +408,9 @@ TurntableRegistration register_turntable(const MeshSilhouette& mesh, const std::
   // Correlated contour errors weigh less against tags and priors than their number says: once more with that weight.
   const double reach_m = kCorrelationReach * mesh.extent().radius_m;
   WeightedResiduals rows = problem.weighted_rows(fit.model, fit.silhouettes, fit.scale_px);
-  fine.correlation = std::max(1.0, rows.weight.sum() / correlated_scores(rows, reach_m).independent);
+  const double shared_sq = kSharedError_px * kSharedError_px / static_cast<double>(views.size());
+  fine.correlation = std::max(1.0, rows.weight.sum() * (1.0 / correlated_scores(rows, reach_m).independent +
+                                                        shared_sq / std::pow(std::max(fit.sigma_px, 0.02), 2)));
   fine.start_scale_px = fit.scale_px;
   fit = refine_jointly(problem, fit.model, px_per_m, fine);
   rows = problem.weighted_rows(fit.model, fit.silhouettes, fit.scale_px);
@@ -419,7 +421,8 @@ TurntableRegistration register_turntable(const MeshSilhouette& mesh, const std::
   Eigen::MatrixXd scaled = unit.asDiagonal() * all.sum() * unit.asDiagonal();
   scaled.diagonal().array() += 1e-9;
   const Eigen::MatrixXd bread = unit.asDiagonal() * scaled.ldlt().solve(identity) * unit.asDiagonal();
-  fill_views(problem, fit, bread, all, fit.per_px * fit.per_px * scores.meat, result);
+  const Eigen::MatrixXd shared = shared_sq * rows.weight.sum() * fit.per_px * all.contour;
+  fill_views(problem, fit, bread, all, fit.per_px * fit.per_px * scores.meat + shared, result);
   result.model = fit.model;
   result.independent = scores.independent;
   const Eigen::MatrixXd per_length = all.contour / (fit.per_px * rows.weight.sum());

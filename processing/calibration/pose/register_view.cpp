@@ -111,8 +111,9 @@ void add_covariance(const ViewToRegister& view, const PoseFit& fit, const ViewRe
   // view takes for distance: not estimated, but its share is in the covariance.
   const double px_per_m = focal_px(view.camera) / fit.pose.centre_in_camera.z();
   const double swell_m = robust_sigma_px(rows) / px_per_m;
-  const PoseCovariance meat = scores.meat + swell_m * swell_m * by_swell * by_swell.transpose();
-  result.covariance = sandwich(weighted.jacobian.transpose() * weighted.weight.asDiagonal() * weighted.jacobian, meat);
+  const PoseCovariance meat = scores.meat + swell_m * swell_m * by_swell * by_swell.transpose() +
+                              kSharedError_px * kSharedError_px * length * per_length;
+  result.covariance = sandwich(per_length, meat);
   result.independent = scores.independent;
   result.sigma_deg = std::sqrt(result.covariance.topLeftCorner<3, 3>().trace()) * kDegPerRad;
   result.sigma_m = std::sqrt(result.covariance.bottomRightCorner<3, 3>().trace());

@@ -126,12 +126,12 @@ TEST(RegisterView, ShortAndLongLensesSmallAndLargeObjects) {
   }
 }
 
-TEST(RegisterView, StatedSigmaIsTheScatter) {
+TEST(RegisterView, StatedSigmaHolds) {
   Seen seen{lump()};
   seen.panel_e = 300.0;  // noise well above the facets' and the lookup's own errors
   const RayScene rays(seen.mesh);
   const MeshSilhouette mesh(seen.mesh);
-  constexpr int kSeeds = 24;
+  constexpr int kSeeds = 16;
   ViewRegistrationOptions options = near_only();
   options.model = RimModel::Facets;
   Eigen::Matrix<double, 6, 1> chi_sq = Eigen::Matrix<double, 6, 1>::Zero();
@@ -141,12 +141,12 @@ TEST(RegisterView, StatedSigmaIsTheScatter) {
     const ViewRegistration found = register_view(mesh, ContourLookup(silhouette_contour(picture)), seen.camera, start, options);
     chi_sq += pose_error(found.camera_from_mesh, seen.truth, seen.mesh).step.cwiseAbs2().cwiseQuotient(found.covariance.diagonal());
   }
-  // 24 draws tell a ratio to 15 %; what is stated has the mesh's possible thickness in it, so distance scatters less.
-  for (Eigen::Index k = 0; k < 5; ++k) {
-    EXPECT_GT(std::sqrt(chi_sq[k] / kSeeds), 0.5) << k;
-    EXPECT_LT(std::sqrt(chi_sq[k] / kSeeds), 1.45) << k;
+  // 16 draws tell a ratio to 18 %; two of its standard deviations above 1. Below: kSharedError_px, common to all draws, is
+  // in what is stated, and for distance the mesh's possible thickness, which an exact mesh does not have.
+  for (Eigen::Index k = 0; k < 6; ++k) {
+    EXPECT_LT(std::sqrt(chi_sq[k] / kSeeds), 1.36) << k;
+    if (k < 5) { EXPECT_GT(std::sqrt(chi_sq[k] / kSeeds), 0.08) << k; }
   }
-  EXPECT_LT(std::sqrt(chi_sq[5] / kSeeds), 1.45);
 }
 
 TEST(RegisterView, ASurfaceOfRevolutionIsAmbiguousAboutItsAxis) {
