@@ -120,6 +120,7 @@ int run(int argc, char** argv) {
   std::vector<Case> cases;
   const Mesh scan = vase_scan(vase_options);
   cases.push_back({"vase, exact", vase(plain), scan});
+  cases.push_back({"vase, same mesh", cases[0].truth, cases[0].truth});
   cases.push_back({"vase, relief 0.1 mm", vase(vase_options), scan});
   const std::filesystem::path meshes = std::filesystem::path(LUMITEXEL_SOURCE_DIR).parent_path().parent_path() / "shared/data/meshes";
   for (const char* name : {"stanford-bunny", "spot"}) {

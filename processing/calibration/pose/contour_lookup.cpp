@@ -67,10 +67,10 @@ void ContourLookup::build_direction(int direction) {
   }
 }
 
-double ContourLookup::distance_px(const Eigen::Vector2d& pixel, const Eigen::Vector2d& normal) const {
+double ContourLookup::distance_px(const Eigen::Vector2d& pixel, std::size_t direction) const {
   const int column = std::clamp(static_cast<int>(pixel.x() / cell_px_), 0, columns_ - 1);
   const int row = std::clamp(static_cast<int>(pixel.y() / cell_px_), 0, rows_ - 1);
-  const std::vector<float>& distances = distance_cells_[direction_of(normal)];
+  const std::vector<float>& distances = distance_cells_[direction];
   return cell_px_ * distances[static_cast<std::size_t>(row * columns_ + column)];
 }
 

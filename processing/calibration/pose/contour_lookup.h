@@ -14,15 +14,15 @@ class ContourLookup {
   // directions.
   explicit ContourLookup(const SilhouetteContour& contour);
 
-  // Distance to the nearest contour with a similar normal, good to a cell or two; large if there is none.
-  double distance_px(const Eigen::Vector2d& pixel, const Eigen::Vector2d& normal) const;
+  // Distance to the nearest contour with a normal of the given eighth of directions or beside it, good to a cell or two; large if there is none.
+  double distance_px(const Eigen::Vector2d& pixel, std::size_t direction) const;
+  std::size_t direction_of(const Eigen::Vector2d& normal) const;
   // The nearest point itself, within reach_px; null if there is none. Exact within a cell's width.
   const ContourPoint* nearest(const Eigen::Vector2d& pixel, const Eigen::Vector2d& normal, double reach_px) const;
   const SilhouetteContour& contour() const { return contour_; }
 
  private:
   static constexpr int kDirections = 8;
-  std::size_t direction_of(const Eigen::Vector2d& normal) const;
   void build_direction(int direction);
   bool in_grid(int column, int row) const { return column >= 0 && row >= 0 && column < columns_ && row < rows_; }
 

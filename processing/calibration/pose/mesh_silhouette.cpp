@@ -12,7 +12,7 @@ namespace lumitexel {
 namespace {
 
 constexpr double kCreaseCosine = 0.766;  // 40 degrees
-constexpr double kOutside_px = 0.75;     // how far outside of the contour nothing may be seen of the mesh
+constexpr double kOutside_px = 0.3;     // how far outside of the contour nothing may be seen of the mesh
 
 // The cubic patch over a triangle: x at barycentric weights (w, u, v).
 Eigen::Vector3d curved_point(const std::array<Eigen::Vector3d, 3>& p, const std::array<Eigen::Vector3d, 3>& n,

@@ -14,24 +14,9 @@ constexpr std::size_t kRefinedOfAll = 40;     // likewise when any rotation is p
 constexpr double kSamePose_deg = 3.0;
 constexpr int kOutlinePoints = 160;
 
-double diameter_px(const ViewToRegister& view, const CentredPose& pose) {
-  const double focal = 0.5 * (view.camera.focal_x_px + view.camera.focal_y_px);
-  return 2.0 * view.mesh.extent().radius_m * focal / std::max(pose.centre_in_camera.z(), 1e-9);
-}
-
-// Share of the outline that lies on the contour.
-double explained_share(const SilhouetteEquations& equations, double scale_px) {
-  double sum = 0.0;
-  for (const SilhouetteEquation& row : equations.rows) {
-    sum += row.length_px * std::sqrt(robust_weight(row.distance_px, scale_px));
-  }
-  return equations.outline_px > 0.0 ? sum / equations.outline_px : 0.0;
-}
-
 // A step in units in which turns and shifts both count as pixels of a point at the object's radius.
 PoseStep units_of(const ViewToRegister& view, const CentredPose& pose) {
-  const double focal = 0.5 * (view.camera.focal_x_px + view.camera.focal_y_px);
-  const double m_per_px = std::max(pose.centre_in_camera.z(), 1e-9) / focal;
+  const double m_per_px = std::max(pose.centre_in_camera.z(), 1e-9) / focal_px(view.camera);
   PoseStep units;
   units << Eigen::Vector3d::Constant(m_per_px / view.mesh.extent().radius_m), Eigen::Vector3d::Constant(m_per_px);
   return units;
@@ -82,33 +67,63 @@ struct Placed {
   double cost = 0;
 };
 
+// The outline in pixels from the object's middle, with the eighth of directions that each point faces.
+struct OutlinePoint {
+  Eigen::Vector2d from_middle;
+  std::size_t direction;
+  double share;  // of the outline's length
+};
+
+std::vector<OutlinePoint> outline_about(const ViewToRegister& view, const CentredPose& pose, const Eigen::Vector2d& middle,
+                                        double spacing_px, RimModel model) {
+  std::vector<OutlinePoint> points;
+  double length_px = 0.0;
+  // Short pieces, one a facet, are thinned: only every spacing_px of length counts.
+  double due_px = 0.0;
+  for (const RimPoint& rim : view.mesh.outline(view.camera, pose, spacing_px, model)) {
+    length_px += rim.length_px;
+    due_px += rim.length_px;
+    if (due_px < spacing_px) continue;
+    points.push_back({rim.pixel - middle, view.contour.direction_of(rim.normal), due_px});
+    due_px = 0.0;
+  }
+  for (OutlinePoint& point : points) point.share /= length_px;
+  return points;
+}
+
+// The mean distance, cut off, of an outline moved and scaled; given up once it passes `best`.
+double placed_cost(const ViewToRegister& view, const std::vector<OutlinePoint>& outline, const Eigen::Vector2d& middle,
+                   double scale, double cut_px, double best) {
+  double cost = 0.0;
+  for (const OutlinePoint& point : outline) {
+    const double distance = view.contour.distance_px(middle + scale * point.from_middle, point.direction);
+    cost += point.share * std::min(distance / cut_px, 1.0);
+    if (cost >= best) return best;
+  }
+  return cost;
+}
+
 // The best of a grid of shifts and distances, all with one outline, scaled: a turn is seen a little from elsewhere then.
 Placed best_shift(const ViewToRegister& view, const CentredPose& pose, double shift_m, RimModel model) {
   const double size_px = diameter_px(view, pose), step_px = size_px / 20.0;
-  const std::vector<RimPoint> outline = view.mesh.outline(view.camera, pose, size_px * 3.0 / kOutlinePoints, model);
+  const Eigen::Vector2d middle = view.camera.project(pose.centre_in_camera);
+  const std::vector<OutlinePoint> outline = outline_about(view, pose, middle, size_px * 3.0 / kOutlinePoints, model);
   Placed best{pose, 1e300};
   if (outline.empty()) return best;
   const double z = pose.centre_in_camera.z(), focal = size_px * z / (2.0 * view.mesh.extent().radius_m);
-  const Eigen::Vector2d middle = view.camera.project(pose.centre_in_camera);
-  const double radius_px = 0.5 * size_px;
-  const int depths = static_cast<int>(std::ceil(shift_m / z * radius_px / step_px));
+  const int depths = static_cast<int>(std::ceil(shift_m / z * 0.5 * size_px / step_px));
   const int reach = static_cast<int>(std::ceil(shift_m * focal / z / step_px));
   for (int d = -depths; d <= depths; ++d) {
     const double depth = z + (depths > 0 ? shift_m * d / depths : 0.0);
     if (depth < 0.2 * z) continue;
     for (int y = -reach; y <= reach; ++y) {
       for (int x = -reach; x <= reach; ++x) {
-        const Eigen::Vector2d target = middle + step_px * Eigen::Vector2d(x, y);
-        double cost = 0.0, length = 0.0;
-        for (const RimPoint& rim : outline) {
-          const Eigen::Vector2d place = target + (rim.pixel - middle) * (z / depth);
-          cost += rim.length_px * std::min(view.contour.distance_px(place, rim.normal) / (1.5 * step_px), 1.0);
-          length += rim.length_px;
-        }
-        if (cost / length >= best.cost) continue;
-        best.cost = cost / length;
+        const Eigen::Vector2d shift = step_px * Eigen::Vector2d(x, y);
+        const double cost = placed_cost(view, outline, middle + shift, z / depth, 1.5 * step_px, best.cost);
+        if (cost >= best.cost) continue;
+        best.cost = cost;
         best.pose.centre_in_camera = pose.centre_in_camera;
-        best.pose.centre_in_camera.head<2>() += step_px * Eigen::Vector2d(x, y) * z / focal;
+        best.pose.centre_in_camera.head<2>() += shift * z / focal;
         best.pose.centre_in_camera *= depth / z;
       }
     }
@@ -117,6 +132,22 @@ Placed best_shift(const ViewToRegister& view, const CentredPose& pose, double sh
 }
 
 }  // namespace
+
+double focal_px(const CameraModel& camera) { return 0.5 * (camera.focal_x_px + camera.focal_y_px); }
+
+double diameter_px(const ViewToRegister& view, const CentredPose& pose) {
+  return 2.0 * view.mesh.extent().radius_m * focal_px(view.camera) / std::max(pose.centre_in_camera.z(), 1e-9);
+}
+
+double explained_share(const SilhouetteEquations& equations, double scale_px) {
+  double sum = 0.0;
+  for (const SilhouetteEquation& row : equations.rows) {
+    sum += row.length_px * std::sqrt(robust_weight(row.distance_px, scale_px));
+  }
+  return equations.outline_px > 0.0 ? sum / equations.outline_px : 0.0;
+}
+
+double settled_px(double scale_px) { return 0.002 + 0.01 * scale_px; }
 
 PoseFit refine_pose(const ViewToRegister& view, const CentredPose& start, const RefineOptions& options) {
   PoseFit fit;
@@ -139,7 +170,7 @@ PoseFit refine_pose(const ViewToRegister& view, const CentredPose& start, const 
     if (!std::isfinite(length_px)) break;
     if (length_px > most_px) step *= most_px / length_px;
     fit.pose = fit.pose.moved(step.cwiseProduct(units));
-    fit.converged = shrunk && length_px < 0.002;
+    fit.converged = shrunk && length_px < settled_px(fit.scale_px);
     if (!(fit.pose.centre_in_camera.z() > 0.0)) break;
   }
   return fit;

@@ -14,10 +14,9 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kCorrelationReach = 0.4;  // of the mesh's radius: contour errors farther apart have nothing in common
+constexpr double kClearlyBetter = 0.9;     // facets instead of a smooth surface
 constexpr double kLeastExplained = 0.5;    // below, most of the outline lies on nothing
 constexpr double kEquallyGood = 1.25;      // ratio of two fits' robust distances that noise and facets may make
-
-double focal_px(const CameraModel& camera) { return 0.5 * (camera.focal_x_px + camera.focal_y_px); }
 
 double spacing_px(const ViewToRegister& view, const CentredPose& pose, std::size_t points, RimModel model) {
   double length_px = 0.0;
@@ -95,6 +94,7 @@ void add_covariance(const ViewToRegister& view, const PoseFit& fit, const ViewRe
   const auto count = static_cast<Eigen::Index>(rows.size());
   WeightedResiduals weighted{{}, Eigen::VectorXd(count), Eigen::VectorXd(count), Eigen::MatrixXd(count, 6)};
   PoseCovariance per_length = PoseCovariance::Zero();
+  PoseStep by_swell = PoseStep::Zero();
   double length = 0.0;
   for (Eigen::Index i = 0; i < count; ++i) {
     const SilhouetteEquation& row = rows[static_cast<std::size_t>(i)];
@@ -103,15 +103,22 @@ void add_covariance(const ViewToRegister& view, const PoseFit& fit, const ViewRe
     weighted.weight[i] = row.length_px * robust_weight(row.distance_px, fit.scale_px);
     weighted.jacobian.row(i) = row.by_pose;
     per_length += weighted.weight[i] * row.by_pose.transpose() * row.by_pose;
+    by_swell += weighted.weight[i] * row.by_swell * row.by_pose.transpose();
     length += weighted.weight[i];
   }
   const FitCovariance scores = correlated_scores(weighted, kCorrelationReach * view.mesh.extent().radius_m);
-  result.covariance = sandwich(weighted.jacobian.transpose() * weighted.weight.asDiagonal() * weighted.jacobian, scores.meat);
+  // A mesh whose contour scatters by so much may well be too thin or too thick by as much all around, which a single
+  // view takes for distance: not estimated, but its share is in the covariance.
+  const double px_per_m = focal_px(view.camera) / fit.pose.centre_in_camera.z();
+  const double swell_m = robust_sigma_px(rows) / px_per_m;
+  const PoseCovariance meat = scores.meat + swell_m * swell_m * by_swell * by_swell.transpose() +
+                              kSharedError_px * kSharedError_px * length * per_length;
+  result.covariance = sandwich(per_length, meat);
   result.independent = scores.independent;
   result.sigma_deg = std::sqrt(result.covariance.topLeftCorner<3, 3>().trace()) * kDegPerRad;
   result.sigma_m = std::sqrt(result.covariance.bottomRightCorner<3, 3>().trace());
   result.ambiguities = undetermined_turns(per_length / length, fit.pose.rotation, view.mesh.extent().radius_m,
-                                          focal_px(view.camera) / fit.pose.centre_in_camera.z(), options.least_turn_share);
+                                          px_per_m, options.least_turn_share);
 }
 
 }  // namespace
@@ -148,7 +155,7 @@ ViewRegistration register_view(const MeshSilhouette& mesh, const ContourLookup& 
   }
   if (!options.model) {
     const PoseFit facets = refined(view, fits[0].pose, 3.0, options.rim_points, RimModel::Facets);
-    if (median_distance_px(facets.equations.rows) < median_distance_px(fits[0].equations.rows) &&
+    if (median_distance_px(facets.equations.rows) < kClearlyBetter * median_distance_px(fits[0].equations.rows) &&
         facets.explained >= 0.98 * fits[0].explained) {
       fits[0] = facets;
       result.model = RimModel::Facets;

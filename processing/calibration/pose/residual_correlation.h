@@ -13,6 +13,11 @@
 
 namespace lumitexel {
 
+// What the measured contour and the computed outline may have in common all around, and no residual shows: the errors of
+// poses of exact meshes, without noise, are of this size (tests/bench/pose_accuracy.cpp). It enters every covariance as
+// floor^2 (sum_i w_i J_i^T J_i / sum_i w_i)^-1, as if there were but one point.
+inline constexpr double kSharedError_px = 0.015;
+
 struct WeightedResiduals {
   std::vector<Eigen::Vector3d> x_in_mesh;
   Eigen::VectorXd residual, weight;

@@ -12,7 +12,7 @@ namespace lumitexel {
 namespace {
 
 constexpr int kReach = 4;         // pixels each side of an edge whose sum is taken: blur and an oblique edge's run
-constexpr int kLevelPixels = 3;   // beyond them, for the local levels
+constexpr int kLevelPixels = 4;   // beyond them, for the local levels
 constexpr int kPanelReach = 12;   // how far the panel may be from an edge's pixel
 constexpr double kPanelShare = 0.3;      // of the panel's level: brighter than any dark thing, darker than any vignette
 constexpr double kLevelTolerance = 0.2;  // of the local contrast, between an edge's levels and its surroundings'
@@ -110,8 +110,9 @@ Outcome measure(const Field& field, const Crossing& at, const Eigen::Vector2d& n
   point.pixel = Eigen::Vector2d(at.x + 0.5 + edge * at.step_x, at.y + 0.5 + edge * at.step_y);
   point.normal = normal;
   const double obliquity = std::abs(at.step_x * normal.x() + at.step_y * normal.y());
-  // The two levels' noise moves the edge by half of the window each.
-  const double levels = kReach * kReach * (variance / (2 * kReach)) / kLevelPixels;
+  // The two levels' noise moves the edge by half of the window each
+  // (nearly all of the noise is the bright half's, kReach pixels').
+  const double levels = kReach * variance / kLevelPixels;
   point.sigma_px = std::hypot(std::sqrt(variance + levels) / (bright - dark) * obliquity, kGrain_px);
   return Outcome::Found;
 }
