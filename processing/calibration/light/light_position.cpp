@@ -55,10 +55,11 @@ struct PointResidual {
   const CameraModel* camera;
   const LineChart* chart;
   HighlightPixel seen;
+  EmitterDisc emitter;
 
   bool operator()(const double* line, const double* light, double* residual) const {
-    const Eigen::Vector2d expected =
-        highlight_pixel(*camera, chart->at(line).sphere(seen.sphere), Eigen::Vector3d(light[0], light[1], light[2]));
+    const Eigen::Vector2d expected = disc_highlight_pixel(*camera, chart->at(line).sphere(seen.sphere),
+                                                          Eigen::Vector3d(light[0], light[1], light[2]), emitter);
     Eigen::Map<Eigen::Vector2d>(residual, 2) = (expected - seen.pixel) / seen.sigma_px;
     return std::isfinite(residual[0]) && std::isfinite(residual[1]);
   }
@@ -95,9 +96,10 @@ void add_rings(Adjustment& a, const CameraModel& camera, double radius_m, const 
   }
 }
 
-void add_points(Adjustment& a, const CameraModel& camera, int view, const std::vector<HighlightPixel>& points) {
+void add_points(Adjustment& a, const CameraModel& camera, int view, const std::vector<HighlightPixel>& points,
+                const EmitterDisc& emitter) {
   for (const HighlightPixel& seen : points) {
-    auto* cost = numeric_cost<PointResidual, 5, 3>(PointResidual{&camera, &a.chart, seen});
+    auto* cost = numeric_cost<PointResidual, 5, 3>(PointResidual{&camera, &a.chart, seen, emitter});
     double* light = a.lights[static_cast<std::size_t>(view)].data();
     a.blocks.push_back(
         {a.problem.AddResidualBlock(cost, new ceres::CauchyLoss(3.0), a.line.data(), light), view, seen.sigma_px});
@@ -261,9 +263,24 @@ Eigen::Vector2d ring_highlight_pixel(const CameraModel& camera, const MirrorSphe
   return sum / static_cast<double>(pixels.size());
 }
 
+Eigen::Vector2d disc_highlight_pixel(const CameraModel& camera, const MirrorSphere& sphere,
+                                     const Eigen::Vector3d& light, const EmitterDisc& emitter) {
+  if (!(emitter.radius_m > 0.0)) return highlight_pixel(camera, sphere, light);
+  const Eigen::Vector3d normal = (emitter.faces - light).normalized();
+  const Eigen::Vector3d across = normal.unitOrthogonal(), other = normal.cross(across);
+  constexpr int kPlaces = 8;  // as for the ring flash
+  const double radius = emitter.radius_m / std::numbers::sqrt2;
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (int i = 0; i < kPlaces; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kPlaces;
+    sum += highlight_pixel(camera, sphere, light + radius * (std::cos(angle) * across + std::sin(angle) * other));
+  }
+  return sum / kPlaces;
+}
+
 LightSolution solve_lights(const CameraModel& camera, const SphereLine& start, double ring_radius_m,
                            const std::vector<HighlightPixel>& rings,
-                           const std::vector<std::vector<HighlightPixel>>& points) {
+                           const std::vector<std::vector<HighlightPixel>>& points, const EmitterDisc& emitter) {
   check_rings(rings);
   Adjustment adjustment(start);
   LightSolution solution;
@@ -277,7 +294,7 @@ LightSolution solve_lights(const CameraModel& camera, const SphereLine& start, d
     if (!first || !first->allFinite()) continue;
     solution.lights[v].measured = true;
     adjustment.lights[v] = {first->x(), first->y(), first->z()};
-    add_points(adjustment, camera, static_cast<int>(v), points[v]);
+    add_points(adjustment, camera, static_cast<int>(v), points[v], emitter);
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;

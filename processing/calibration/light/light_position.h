@@ -41,6 +41,15 @@ std::vector<Eigen::Vector2d> ring_highlight_pixels(const CameraModel& camera, co
 // Their centroid: that of the reflection of a ring of the given radius.
 Eigen::Vector2d ring_highlight_pixel(const CameraModel& camera, const MirrorSphere& sphere, double ring_radius_m);
 
+// A light of some extent: an evenly bright disc about its position, facing a point (the arm's pivot). Its highlight is the
+// centroid of the disc's reflection, which to second order is that of a ring of radius / sqrt(2).
+struct EmitterDisc {
+  double radius_m = 0;  // 0: a point
+  Eigen::Vector3d faces = Eigen::Vector3d::UnitZ();  // camera's frame, m
+};
+Eigen::Vector2d disc_highlight_pixel(const CameraModel& camera, const MirrorSphere& sphere,
+                                     const Eigen::Vector3d& light, const EmitterDisc& emitter);
+
 struct MeasuredLight {
   bool measured = false;  // false: fewer than three highlights, position and covariance mean nothing
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
@@ -64,6 +73,6 @@ struct LightSolution {
 // Throws BadInput if rings do not cover three spheres or more.
 LightSolution solve_lights(const CameraModel& camera, const SphereLine& start, double ring_radius_m,
                            const std::vector<HighlightPixel>& rings,
-                           const std::vector<std::vector<HighlightPixel>>& points);
+                           const std::vector<std::vector<HighlightPixel>>& points, const EmitterDisc& emitter = {});
 
 }  // namespace lumitexel
