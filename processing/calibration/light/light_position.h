@@ -51,7 +51,9 @@ Eigen::Vector2d disc_highlight_pixel(const CameraModel& camera, const MirrorSphe
                                      const Eigen::Vector3d& light, const EmitterDisc& emitter);
 
 struct MeasuredLight {
-  bool measured = false;  // false: fewer than three highlights, position and covariance mean nothing
+  // False, and position and covariance mean nothing: fewer than three highlights; a distance uncertain by half of itself or
+  // more; a light farther away than 200 lengths of the line of spheres.
+  bool measured = false;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // m^2
   Eigen::Matrix3d own_covariance =
@@ -66,6 +68,9 @@ struct LightSolution {
   std::vector<MeasuredLight> lights;  // as the views given
   double residual_px = 0;             // rms over everything, outliers left out
   double sigma_scale = 1;  // residuals over the highlights' stated sigmas; covariances are scaled by its square
+  // What the lights' errors have in common through the sphere line (the mean covariance between two views' lights): no
+  // number of views and no arm averages it away. Zero with fewer than two lights.
+  Eigen::Matrix3d shared_covariance = Eigen::Matrix3d::Zero();
   bool converged = false;
 };
 
