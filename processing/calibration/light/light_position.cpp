@@ -2,6 +2,8 @@
 
 #include <ceres/ceres.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -55,10 +57,11 @@ struct PointResidual {
   const CameraModel* camera;
   const LineChart* chart;
   HighlightPixel seen;
+  EmitterDisc emitter;
 
   bool operator()(const double* line, const double* light, double* residual) const {
-    const Eigen::Vector2d expected =
-        highlight_pixel(*camera, chart->at(line).sphere(seen.sphere), Eigen::Vector3d(light[0], light[1], light[2]));
+    const Eigen::Vector2d expected = disc_highlight_pixel(*camera, chart->at(line).sphere(seen.sphere),
+                                                          Eigen::Vector3d(light[0], light[1], light[2]), emitter);
     Eigen::Map<Eigen::Vector2d>(residual, 2) = (expected - seen.pixel) / seen.sigma_px;
     return std::isfinite(residual[0]) && std::isfinite(residual[1]);
   }
@@ -95,9 +98,10 @@ void add_rings(Adjustment& a, const CameraModel& camera, double radius_m, const 
   }
 }
 
-void add_points(Adjustment& a, const CameraModel& camera, int view, const std::vector<HighlightPixel>& points) {
+void add_points(Adjustment& a, const CameraModel& camera, int view, const std::vector<HighlightPixel>& points,
+                const EmitterDisc& emitter) {
   for (const HighlightPixel& seen : points) {
-    auto* cost = numeric_cost<PointResidual, 5, 3>(PointResidual{&camera, &a.chart, seen});
+    auto* cost = numeric_cost<PointResidual, 5, 3>(PointResidual{&camera, &a.chart, seen, emitter});
     double* light = a.lights[static_cast<std::size_t>(view)].data();
     a.blocks.push_back(
         {a.problem.AddResidualBlock(cost, new ceres::CauchyLoss(3.0), a.line.data(), light), view, seen.sigma_px});
@@ -136,42 +140,82 @@ void measure_residuals(Adjustment& a, LightSolution& solution) {
   solution.sigma_scale = freedom > 0 ? std::max(1.0, std::sqrt(sum_sigma2 / freedom)) : 1.0;
 }
 
-// One covariance block a measured view, in their order; empty if the problem is too degenerate for one.
-std::vector<Eigen::Matrix3d> light_covariances(Adjustment& a, const LightSolution& solution) {
-  std::vector<std::pair<const double*, const double*>> wanted;
+// Covariances of the measured lights, in their order; empty if the problem is too degenerate for any.
+struct LightCovariances {
+  std::vector<Eigen::Matrix3d> whole, own;  // own: the line held fixed
+  Eigen::Matrix3d mean_of_pairs = Eigen::Matrix3d::Zero();
+};
+
+LightCovariances light_covariances(Adjustment& a, const LightSolution& solution) {
+  std::vector<const double*> lights;
   for (std::size_t v = 0; v < a.lights.size(); ++v) {
-    if (solution.lights[v].measured) wanted.emplace_back(a.lights[v].data(), a.lights[v].data());
+    if (solution.lights[v].measured) lights.push_back(a.lights[v].data());
   }
-  if (wanted.empty()) return {};
+  std::vector<std::pair<const double*, const double*>> wanted;
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    for (std::size_t j = i; j < lights.size(); ++j) wanted.emplace_back(lights[i], lights[j]);
+  }
+  LightCovariances result;
+  if (wanted.empty()) return result;
+  std::vector<std::pair<const double*, const double*>> with_line = wanted;
+  for (const double* light : lights) with_line.emplace_back(light, a.line.data());
+  with_line.emplace_back(a.line.data(), a.line.data());
   ceres::Covariance::Options options;
   options.algorithm_type = ceres::DENSE_SVD;  // some 60 unknowns; tolerates a weakly determined direction
   options.null_space_rank = -1;
   ceres::Covariance covariance(options);
-  if (!covariance.Compute(wanted, &a.problem)) return {};
-  std::vector<Eigen::Matrix3d> blocks;
-  for (const auto& [light, same] : wanted) {
+  if (!covariance.Compute(with_line, &a.problem)) return result;
+  Eigen::Matrix<double, 5, 5, Eigen::RowMajor> line;
+  covariance.GetCovarianceBlock(a.line.data(), a.line.data(), line.data());
+  const double scale2 = solution.sigma_scale * solution.sigma_scale;
+  int between = 0;
+  for (const auto& [first, second] : wanted) {
     Eigen::Matrix<double, 3, 3, Eigen::RowMajor> block;
-    covariance.GetCovarianceBlock(light, same, block.data());
-    blocks.push_back(block * (solution.sigma_scale * solution.sigma_scale));
+    covariance.GetCovarianceBlock(first, second, block.data());
+    if (first == second) {
+      // Not by a second problem with the line held constant: Ceres 2.1's dense SVD was seen to return some of its blocks
+      // five times too large, larger than with the line free.
+      Eigen::Matrix<double, 3, 5, Eigen::RowMajor> mixed;
+      covariance.GetCovarianceBlock(first, a.line.data(), mixed.data());
+      const Eigen::Matrix3d by_line = mixed * line.ldlt().solve(mixed.transpose());
+      result.whole.push_back(scale2 * block);
+      result.own.push_back(scale2 * (block - by_line));
+    } else {
+      result.mean_of_pairs += 0.5 * scale2 * (block + block.transpose());
+      ++between;
+    }
   }
-  return blocks;
+  if (between > 0) result.mean_of_pairs /= between;
+  return result;
+}
+
+// Refused: farther than this many lengths of the line of spheres, or with a distance known to no better than its half. There
+// the fit is not linear any more and its covariance means nothing.
+constexpr double kFarthestLines = 200.0, kLeastKnown = 0.5;
+
+bool is_credible(const MeasuredLight& light, const Eigen::Vector3d& position, const SphereLine& line) {
+  const Eigen::Vector3d middle = line.first_centre + 0.5 * (line.count - 1) * line.spacing_m * line.direction;
+  const double distance = (position - middle).norm();
+  const double worst = std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(light.covariance).eigenvalues()[2]);
+  return distance < kFarthestLines * line.spacing_m * std::max(1, line.count - 1) && worst < kLeastKnown * distance;
 }
 
 void fill_covariances(Adjustment& a, LightSolution& solution) {
-  const std::vector<Eigen::Matrix3d> whole = light_covariances(a, solution);
-  a.problem.SetParameterBlockConstant(a.line.data());
-  const std::vector<Eigen::Matrix3d> own = light_covariances(a, solution);
-  a.problem.SetParameterBlockVariable(a.line.data());
+  const LightCovariances covariances = light_covariances(a, solution);
+  solution.shared_covariance = covariances.mean_of_pairs;
   std::size_t next = 0;
-  for (MeasuredLight& light : solution.lights) {
+  for (std::size_t v = 0; v < solution.lights.size(); ++v) {
+    MeasuredLight& light = solution.lights[v];
     if (!light.measured) continue;
-    if (next >= whole.size() || next >= own.size()) {  // without an uncertainty there is no measurement
+    if (next >= covariances.whole.size()) {  // without an uncertainty there is no measurement
       light.measured = false;
       solution.converged = false;
       continue;
     }
-    light.covariance = whole[next];
-    light.own_covariance = own[next++];
+    light.covariance = covariances.whole[next];
+    light.own_covariance = covariances.own[next++];
+    const auto& p = a.lights[v];
+    light.measured = is_credible(light, {p[0], p[1], p[2]}, solution.line);
   }
 }
 
@@ -261,9 +305,24 @@ Eigen::Vector2d ring_highlight_pixel(const CameraModel& camera, const MirrorSphe
   return sum / static_cast<double>(pixels.size());
 }
 
+Eigen::Vector2d disc_highlight_pixel(const CameraModel& camera, const MirrorSphere& sphere,
+                                     const Eigen::Vector3d& light, const EmitterDisc& emitter) {
+  if (!(emitter.radius_m > 0.0)) return highlight_pixel(camera, sphere, light);
+  const Eigen::Vector3d normal = (emitter.faces - light).normalized();
+  const Eigen::Vector3d across = normal.unitOrthogonal(), other = normal.cross(across);
+  constexpr int kPlaces = 8;  // as for the ring flash
+  const double radius = emitter.radius_m / std::numbers::sqrt2;
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (int i = 0; i < kPlaces; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kPlaces;
+    sum += highlight_pixel(camera, sphere, light + radius * (std::cos(angle) * across + std::sin(angle) * other));
+  }
+  return sum / kPlaces;
+}
+
 LightSolution solve_lights(const CameraModel& camera, const SphereLine& start, double ring_radius_m,
                            const std::vector<HighlightPixel>& rings,
-                           const std::vector<std::vector<HighlightPixel>>& points) {
+                           const std::vector<std::vector<HighlightPixel>>& points, const EmitterDisc& emitter) {
   check_rings(rings);
   Adjustment adjustment(start);
   LightSolution solution;
@@ -277,7 +336,7 @@ LightSolution solve_lights(const CameraModel& camera, const SphereLine& start, d
     if (!first || !first->allFinite()) continue;
     solution.lights[v].measured = true;
     adjustment.lights[v] = {first->x(), first->y(), first->z()};
-    add_points(adjustment, camera, static_cast<int>(v), points[v]);
+    add_points(adjustment, camera, static_cast<int>(v), points[v], emitter);
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;

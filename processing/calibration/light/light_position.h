@@ -41,8 +41,19 @@ std::vector<Eigen::Vector2d> ring_highlight_pixels(const CameraModel& camera, co
 // Their centroid: that of the reflection of a ring of the given radius.
 Eigen::Vector2d ring_highlight_pixel(const CameraModel& camera, const MirrorSphere& sphere, double ring_radius_m);
 
+// A light of some extent: an evenly bright disc about its position, facing a point (the arm's pivot). Its highlight is the
+// centroid of the disc's reflection, which to second order is that of a ring of radius / sqrt(2).
+struct EmitterDisc {
+  double radius_m = 0;  // 0: a point
+  Eigen::Vector3d faces = Eigen::Vector3d::UnitZ();  // camera's frame, m
+};
+Eigen::Vector2d disc_highlight_pixel(const CameraModel& camera, const MirrorSphere& sphere,
+                                     const Eigen::Vector3d& light, const EmitterDisc& emitter);
+
 struct MeasuredLight {
-  bool measured = false;  // false: fewer than three highlights, position and covariance mean nothing
+  // False, and position and covariance mean nothing: fewer than three highlights; a distance uncertain by half of itself or
+  // more; a light farther away than 200 lengths of the line of spheres.
+  bool measured = false;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // m^2
   Eigen::Matrix3d own_covariance =
@@ -57,6 +68,9 @@ struct LightSolution {
   std::vector<MeasuredLight> lights;  // as the views given
   double residual_px = 0;             // rms over everything, outliers left out
   double sigma_scale = 1;  // residuals over the highlights' stated sigmas; covariances are scaled by its square
+  // What the lights' errors have in common through the sphere line (the mean covariance between two views' lights): no
+  // number of views and no arm averages it away. Zero with fewer than two lights.
+  Eigen::Matrix3d shared_covariance = Eigen::Matrix3d::Zero();
   bool converged = false;
 };
 
@@ -64,6 +78,6 @@ struct LightSolution {
 // Throws BadInput if rings do not cover three spheres or more.
 LightSolution solve_lights(const CameraModel& camera, const SphereLine& start, double ring_radius_m,
                            const std::vector<HighlightPixel>& rings,
-                           const std::vector<std::vector<HighlightPixel>>& points);
+                           const std::vector<std::vector<HighlightPixel>>& points, const EmitterDisc& emitter = {});
 
 }  // namespace lumitexel
