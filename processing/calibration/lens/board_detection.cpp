@@ -58,8 +58,9 @@ void add_checkerboard(const MosaicRadiance& image, const BoardDescription& board
   }
 }
 
-void add_tags(const MosaicRadiance& image, const BoardDescription& board, BoardSighting& sighting) {
-  const std::vector<DetectedTag> tags = detect_tags(image);
+void add_tags(const MosaicRadiance& image, const BoardDescription& board, const std::optional<CameraModel>& lens,
+              BoardSighting& sighting) {
+  const std::vector<DetectedTag> tags = detect_tags(image, lens);
   std::map<int, int> times_seen;
   for (const DetectedTag& tag : tags) ++times_seen[tag.id];
   for (const DetectedTag& tag : tags) {
@@ -78,7 +79,8 @@ void add_tags(const MosaicRadiance& image, const BoardDescription& board, BoardS
 
 }  // namespace
 
-BoardSighting detect_board(const MosaicRadiance& image, const BoardDescription& board, const std::string& name) {
+BoardSighting detect_board(const MosaicRadiance& image, const BoardDescription& board, const std::string& name,
+                           const std::optional<CameraModel>& lens) {
   const bool checkered = board.pattern == BoardDescription::Pattern::Checkerboard;
   const int least = checkered ? 3 : 1;  // what OpenCV needs
   if (board.columns < least || board.rows < least || !(board.pitch_m > 0.0))
@@ -88,7 +90,7 @@ BoardSighting detect_board(const MosaicRadiance& image, const BoardDescription& 
   if (checkered) {
     add_checkerboard(image, board, sighting);
   } else {
-    add_tags(image, board, sighting);
+    add_tags(image, board, lens, sighting);
   }
   return sighting;
 }

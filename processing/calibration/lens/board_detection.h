@@ -1,6 +1,9 @@
 // Where the points of a calibration board appear in a photograph.
 #pragma once
 
+#include <optional>
+
+#include "processing/calibration/lens/camera_model.h"
 #include "processing/calibration/lens/landmark.h"
 #include "processing/image/hdr_merge.h"
 #include "rig/rig_description.h"
@@ -18,6 +21,8 @@ namespace lumitexel {
 // same board. It does not matter to the lens; whoever needs the board's pose itself uses tags.
 //
 // Tag grid: the tags that are seen, four points each; ids outside the board, or seen twice, are left out.
-BoardSighting detect_board(const MosaicRadiance& image, const BoardDescription& board, const std::string& name);
+// Their edges bend with the lens's distortion: give the lens if it is known (tag_detection.h).
+BoardSighting detect_board(const MosaicRadiance& image, const BoardDescription& board, const std::string& name,
+                           const std::optional<CameraModel>& lens = {});
 
 }  // namespace lumitexel

@@ -50,7 +50,7 @@ Stacked stacked(const CameraModel& camera, const std::vector<BoardSighting>& sig
 // The size of a change along `direction` that is seen 19 times in 20 at a false alarm rate of 1 in 100.
 double detectable(const Eigen::MatrixXd& response, const Eigen::LDLT<Eigen::MatrixXd>& expected, const LensVector& direction) {
   // A chi square of 8 degrees with this non-centrality passes its 99 % bound 19 times in 20.
-  constexpr double kNonCentrality = 27.2;
+  constexpr double kNonCentrality = 31.7;
   const Eigen::VectorXd shift = response * direction;
   const double power = shift.dot(expected.solve(shift));
   return power > 0.0 ? std::sqrt(kNonCentrality / power) : std::numeric_limits<double>::infinity();

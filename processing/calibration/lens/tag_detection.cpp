@@ -56,30 +56,48 @@ struct Edge {
   }
 };
 
-// Parameters: eight coordinates, blur, black, then per edge the white at its start and its end.
-constexpr Eigen::Index kBlur = 8, kBlack = 9, kWhite = 10, kParameters = 18;
+// Parameters: eight coordinates, blur, black, then the white at each corner.
+constexpr Eigen::Index kBlur = 8, kBlack = 9, kWhite = 10, kParameters = 14;
+using Bows = std::array<double, 4>;  // outward, in the middle of each edge
 
-double edge_profile(const PatchSample& sample, const Eigen::VectorXd& p, Eigen::VectorXd& gradient) {
+// How far a straight edge's picture lies outside the chord between its ends.
+Bows bows_of(const Corners& corners, const std::optional<CameraModel>& lens) {
+  Bows bows{};
+  if (!lens) return bows;
+  for (std::size_t e = 0; e < 4; ++e) {
+    const Eigen::Vector2d &a = corners[e], &b = corners[(e + 1) % 4];
+    // Towards the chord's middle, turned into the plane of the two rays: there lies the straight edge.
+    const Eigen::Vector3d across = lens->unproject(a).cross(lens->unproject(b)).normalized();
+    const Eigen::Vector3d middle = lens->unproject(0.5 * (a + b));
+    const Eigen::Vector2d on_edge = lens->project(middle - across.dot(middle) * across);
+    bows[e] = Edge(a, b).outward.dot(on_edge - a);
+  }
+  return bows;
+}
+
+double edge_profile(const PatchSample& sample, const Bows& bows, const Eigen::VectorXd& p, Eigen::VectorXd& gradient) {
   const Eigen::Index i = sample.part, j = (i + 1) % 4;
   const Edge edge(p.segment<2>(2 * i), p.segment<2>(2 * j));
   const Eigen::Vector2d from_corner = sample.pixel - edge.from;
-  const double distance = edge.outward.dot(from_corner), t = edge.along.dot(from_corner) / edge.length;
+  const double t = edge.along.dot(from_corner) / edge.length;
+  const double distance = edge.outward.dot(from_corner) - 4.0 * t * (1.0 - t) * bows[static_cast<std::size_t>(i)];
   const double blur = p[kBlur], share = normal_integral(distance / blur);
-  const double white = (1.0 - t) * p[kWhite + 2 * i] + t * p[kWhite + 2 * i + 1];
+  const double white = (1.0 - t) * p[kWhite + i] + t * p[kWhite + j];
   const double slope = (white - p[kBlack]) * normal_density(distance / blur) / blur;
   gradient.setZero();
   gradient.segment<2>(2 * i) = -slope * (1.0 - t) * edge.outward;
   gradient.segment<2>(2 * j) = -slope * t * edge.outward;
   gradient[kBlur] = -slope * distance / blur;
   gradient[kBlack] = 1.0 - share;
-  gradient[kWhite + 2 * i] = share * (1.0 - t);
-  gradient[kWhite + 2 * i + 1] = share * t;
+  gradient[kWhite + i] = share * (1.0 - t);
+  gradient[kWhite + j] = share * t;
   return p[kBlack] + (white - p[kBlack]) * share;
 }
 
 // Samples in a band about each edge that holds nothing but border and margin. Pixels near a corner see two edges.
 std::vector<PatchSample> edge_samples(const MosaicRadiance& image, const Corners& corners) {
-  constexpr double kNearCorner_px = 2.5, kWidestBand_px = 4.0, kBlurAllowance_px = 1.5, kLeastBand_px = 1.0;
+  constexpr double kNearCorner_px = 2.5, kWidestBand_px = 4.0, kLeastBand_px = 1.0;
+  constexpr double kBitsBlur_px = 1.5, kMarginBlur_px = 0.5;  // how far inside bits, and outside what follows the margin, may show
   const Eigen::Vector2d reach(kWidestBand_px, kWidestBand_px);
   std::vector<PatchSample> samples;
   for (int e = 0; e < 4; ++e) {
@@ -88,11 +106,13 @@ std::vector<PatchSample> edge_samples(const MosaicRadiance& image, const Corners
                           &d = corners[static_cast<std::size_t>((e + 3) % 4)];
     const Edge edge(a, b);
     const double depth = std::min(std::abs(edge.outward.dot(c - a)), std::abs(edge.outward.dot(d - a)));
-    const double band = std::clamp(depth / kCellsPerEdge - kBlurAllowance_px, kLeastBand_px, kWidestBand_px);
+    const double cell = depth / kCellsPerEdge;
+    const double inside = std::clamp(cell - kBitsBlur_px, kLeastBand_px, kWidestBand_px);
+    const double outside = std::clamp(cell - kMarginBlur_px, kLeastBand_px, kWidestBand_px);
     const double skipped = std::min(kNearCorner_px, 0.15 * edge.length);
     for (PatchSample sample : patch_samples(image, a.cwiseMin(b) - reach, a.cwiseMax(b) + reach)) {
       const double across = edge.outward.dot(sample.pixel - a), along = edge.along.dot(sample.pixel - a);
-      if (std::abs(across) > band || along < skipped || along > edge.length - skipped) continue;
+      if (across < -inside || across > outside || along < skipped || along > edge.length - skipped) continue;
       sample.part = e;
       samples.push_back(sample);
     }
@@ -107,14 +127,13 @@ Eigen::VectorXd edge_start(const std::vector<PatchSample>& samples, const Corner
   start[kBlack] = std::numeric_limits<double>::infinity();
   for (const PatchSample& sample : samples) {
     start[kBlack] = std::min(start[kBlack], sample.value);
-    double& white = start[kWhite + 2 * sample.part];
+    double& white = start[kWhite + sample.part];
     white = std::max(white, sample.value);
   }
-  for (Eigen::Index e = 0; e < 4; ++e) start[kWhite + 2 * e + 1] = start[kWhite + 2 * e];
   return start;
 }
 
-std::optional<DetectedTag> refined(const MosaicRadiance& image, const Found& found) {
+std::optional<DetectedTag> refined(const MosaicRadiance& image, const Found& found, const std::optional<CameraModel>& lens) {
   double shortest = std::numeric_limits<double>::infinity();
   for (std::size_t c = 0; c < 4; ++c) {
     shortest = std::min(shortest, (found.corners[(c + 1) % 4] - found.corners[c]).norm());
@@ -128,7 +147,11 @@ std::optional<DetectedTag> refined(const MosaicRadiance& image, const Found& fou
   for (int round = 0; round < 2; ++round) {  // the band follows the edges that were found
     const auto samples = edge_samples(image, corners);
     if (samples.empty()) return std::nullopt;
-    fit = fit_patch(samples, edge_start(samples, corners), edge_profile);
+    const Bows bows = bows_of(corners, lens);
+    fit = fit_patch(samples, edge_start(samples, corners),
+                    [&bows](const PatchSample& sample, const Eigen::VectorXd& p, Eigen::VectorXd& gradient) {
+                      return edge_profile(sample, bows, p, gradient);
+                    });
     if (!fit || !(fit->parameters[kBlur] > 0.05) || fit->parameters[kBlur] > shortest / kCellsPerEdge)
       return std::nullopt;
     for (Eigen::Index c = 0; c < 4; ++c) corners[static_cast<std::size_t>(c)] = fit->parameters.segment<2>(2 * c);
@@ -149,11 +172,11 @@ std::optional<DetectedTag> refined(const MosaicRadiance& image, const Found& fou
 
 }  // namespace
 
-std::vector<DetectedTag> detect_tags(const MosaicRadiance& image) {
+std::vector<DetectedTag> detect_tags(const MosaicRadiance& image, const std::optional<CameraModel>& lens) {
   std::vector<DetectedTag> tags;
   if (image.width < kLeastEdge_px || image.height < kLeastEdge_px) return tags;
   for (const Found& found : find_tags(visible_picture(image))) {
-    if (auto tag = refined(image, found)) tags.push_back(*tag);
+    if (auto tag = refined(image, found, lens)) tags.push_back(*tag);
   }
   std::sort(tags.begin(), tags.end(), [](const DetectedTag& a, const DetectedTag& b) {
     return a.id != b.id ? a.id < b.id : a.corners_px[0].x() < b.corners_px[0].x();

@@ -62,7 +62,7 @@ class FlatProblem {
       const Eigen::VectorXd move = hessian.ldlt().solve(descent);
       if (!move.allFinite()) return std::nullopt;
       p += move;
-      if (move.dot(descent) < 1e-9) break;
+      if (move.dot(descent) < 1e-4) break;  // of chi square: a hundredth of a sigma
     }
     return summary(p, hessian, terms, kept);
   }
@@ -181,7 +181,9 @@ VignettingFit fit_vignetting(const std::vector<MosaicRadiance>& flats, const Cam
   for (int round = 0; round < kRounds; ++round) {
     const auto full = problem.fit(kMostTerms, kept);
     if (!full) return result;
-    kept = clean_cells(cells, full->off);
+    const auto clean = clean_cells(cells, full->off);
+    if (clean == kept) break;
+    kept = clean;
   }
   const auto count = static_cast<double>(std::count(kept.begin(), kept.end(), true));
   const auto full = problem.fit(kMostTerms, kept);

@@ -30,7 +30,7 @@ TEST(LensCalibration, covarianceIsTheScatter) {
     // All terms are large here against their sigma, so that the choice of terms does not bias the scatter.
     CameraModel strong = truth;
     strong.k2 = 4.0, strong.p1 = 0.004, strong.p2 = -0.003;
-    const auto result = calibrate_lens(1024, 768, placements(strong, wide_board(), 10, kSigma_px, static_cast<std::uint64_t>(seed)));
+    const auto result = calibrate_lens(1024, 768, placements(strong, sparse_board(), 12, kSigma_px, static_cast<std::uint64_t>(seed)));
     ASSERT_TRUE(result.usable()) << result.refusal;
     for (const bool free : result.terms) EXPECT_TRUE(free);
     const LensVector miss = lens_vector(result.camera) - lens_vector(strong);
@@ -52,7 +52,7 @@ TEST(LensCalibration, addsNoTermsToALensWithoutDistortion) {
   plain.k1 = plain.k2 = plain.p1 = plain.p2 = 0;
   int none = 0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
-    const auto result = calibrate_lens(1024, 768, placements(plain, wide_board(), 6, kSigma_px, seed));
+    const auto result = calibrate_lens(1024, 768, placements(plain, sparse_board(), 6, kSigma_px, seed));
     none += result.camera.k1 == 0 && result.camera.k2 == 0 && result.camera.p1 == 0 && result.camera.p2 == 0;
   }
   std::printf("no distortion said in %d of 100\n", none);

@@ -67,7 +67,7 @@ CornerErrors corner_errors(double edge_px, int seeds, const PictureOptions& opti
 // far below half a pixel, which is what a confusion of conventions costs, and far above the noise.
 TEST(TagDetection, cornersComeInThePrintedOrderUnderAnyRotation) {
   const CameraModel camera = small_camera();
-  for (int turn = 0; turn < 360; turn += 45) {
+  for (int turn = 0; turn < 360; turn += 60) {
     const Eigen::Isometry3d pose = board_pose(0.4, 5, -8, turn);
     const auto tags = detect_tags(
         noisy_picture(camera, board_electrons(camera, pose, tag_grid_pattern(one_tag(0.05, 17)), {}), {}, 1));
@@ -78,14 +78,14 @@ TEST(TagDetection, cornersComeInThePrintedOrderUnderAnyRotation) {
   }
 }
 
-// 0.8 … 1.25: the scatter of some 200 correlated values is known to a tenth or so.
+// 0.75 … 1.3: the scatter of 160 correlated values of unequal sigmas is known to a tenth or so.
 TEST(TagDetection, statedSigmaIsTheScatterAndBetterThanTheDetectorsOwn) {
-  for (const double edge_px : {20.0, 40.0, 100.0}) {
-    const CornerErrors errors = corner_errors(edge_px, 25, {});
-    RecordProperty("corner_rms_" + std::to_string(static_cast<int>(edge_px)), std::to_string(errors.rms_px));
+  constexpr int kSeeds = 20;
+  for (const double edge_px : {20.0, 30.0, 50.0, 100.0}) {
+    const CornerErrors errors = corner_errors(edge_px, kSeeds, {});
     std::printf("tag %3.0f px: %d found, RMS %.4f, stated %.4f, libapriltag %.4f, mean %.4f %.4f\n", edge_px, errors.found,
                 errors.rms_px, errors.stated_px, errors.found_rms_px, errors.mean_px.x(), errors.mean_px.y());
-    EXPECT_GE(errors.found, 24);
+    EXPECT_GE(errors.found, kSeeds - 1);
     EXPECT_GT(errors.rms_px / errors.stated_px, 0.75);
     EXPECT_LT(errors.rms_px / errors.stated_px, 1.3);
     EXPECT_LT(errors.rms_px, 0.5 * errors.found_rms_px);
@@ -95,9 +95,9 @@ TEST(TagDetection, statedSigmaIsTheScatterAndBetterThanTheDetectorsOwn) {
 TEST(TagDetection, readsGreenOfAMosaic) {
   PictureOptions options;
   options.mosaic = Mosaic::Rggb;
-  const CornerErrors errors = corner_errors(50.0, 12, options);
+  const CornerErrors errors = corner_errors(50.0, 8, options);
   std::printf("mosaic: RMS %.4f stated %.4f\n", errors.rms_px, errors.stated_px);
-  EXPECT_EQ(errors.found, 12);
+  EXPECT_EQ(errors.found, 8);
   EXPECT_LT(errors.rms_px / errors.stated_px, 1.4);
 }
 
