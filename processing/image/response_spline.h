@@ -13,6 +13,7 @@ class ResponseSpline {
 
   explicit ResponseSpline(const Vector& coefficients);
 
+  static Vector basis(double u);          // of q: q(u) = basis(u) . coefficients
   double linear(double u) const;          // L(u); continued straight outside [0, 1]
   double slope(double u) const;           // dL/du, positive
   double inverse(double linear) const;    // u
