@@ -21,7 +21,7 @@ constexpr int kByModel = 4;           // then the curve chooses them so often; t
 constexpr double kClearSigmas = 4.0;  // of a prediction from clipping
 constexpr double kOutlierSigmas = 6.0;
 constexpr double kBendSigma = 3.0;    // prior on second differences of the log slope: a decade is 2.3
-constexpr double kConverged = 1e-6;
+constexpr double kConverged = 1e-5;
 constexpr double kWorstRelativeSigma = 0.05;
 constexpr int kPoints = 65;
 constexpr double kReference = 0.5;
@@ -109,11 +109,29 @@ struct Reduced {
   int pixels = 0;
 };
 
-// d(code) by d(rate) and d(coefficients), at the curve's prediction.
+// A sample about the curve's prediction.
 struct Linearised {
-  double residual, weight, by_rate, predicted;
-  Vector by_curve;
+  double residual, weight, by_rate, predicted, slope;
 };
+
+// How much the spline bends, squared: a quadratic form of its coefficients.
+Matrix bends() {
+  Matrix sum = Matrix::Zero();
+  for (int k = 0; k + 2 < ResponseSpline::kSplines; ++k) {
+    Vector second = Vector::Zero();
+    second[k] = second[k + 2] = 1.0;
+    second[k + 1] = -2.0;
+    sum += second * second.transpose();
+  }
+  return sum;
+}
+Matrix prior() { return bends() / (kBendSigma * kBendSigma); }
+// What changes the curve's scale and nothing else.
+Vector scale_direction() {
+  Vector direction = Vector::Ones();
+  direction[ResponseSpline::kSplines] = 0.0;
+  return direction;
+}
 
 // See Fit::start. Basis: log u and splines over the square root of u.
 Vector starting_curve(const std::vector<Pixel>& pixels, const Scaled& sensor) {
@@ -125,7 +143,9 @@ Vector starting_curve(const std::vector<Pixel>& pixels, const Scaled& sensor) {
     return row;
   };
   Eigen::Matrix<double, kTerms, kTerms> normal = 1e-3 * Eigen::Matrix<double, kTerms, kTerms>::Identity();
+  normal.bottomRightCorner<ResponseSpline::kCoefficients, ResponseSpline::kCoefficients>() += bends();
   Terms right = 1e-3 * Terms::Unit(0);  // without any light: a straight line
+  double lowest = 1.0;
   for (const Pixel& pixel : pixels) {
     double weights = 0.0, mean_log_s = 0.0;
     Terms mean = Terms::Zero();
@@ -139,6 +159,7 @@ Vector starting_curve(const std::vector<Pixel>& pixels, const Scaled& sensor) {
           weights += weight;
           mean += weight * row;
           mean_log_s += weight * std::log(sample.time_s);
+          lowest = std::min(lowest, sample.u);
         } else {
           const Terms off = row - mean / weights;
           normal += weight * off * off.transpose();
@@ -150,19 +171,18 @@ Vector starting_curve(const std::vector<Pixel>& pixels, const Scaled& sensor) {
   }
   const Terms solution = normal.ldlt().solve(right);
   // From log L to log slope, and that to the spline.
-  Matrix fit_normal = 1e-9 * Matrix::Identity();
+  Matrix fit_normal = 0.1 * bends() + 1e-9 * Matrix::Identity();
   Vector fit_right = Vector::Zero();
   for (int i = 5; i <= 100; ++i) {
     const double u = std::pow(0.01 * i, 2), delta = 1e-3 * u;
+    if (u < lowest) continue;
     const double below = solution.dot(terms(u - delta)), above = solution.dot(terms(std::min(u + delta, 1.0)));
     const double steepness = std::max((above - below) / (std::min(u + delta, 1.0) - u + delta), 0.1 / u);
     const Vector row = ResponseSpline::basis(u);
     fit_normal += row * row.transpose();
     fit_right += row * (solution.dot(terms(u)) + std::log(steepness));
   }
-  Vector coefficients = fit_normal.ldlt().solve(fit_right);
-  coefficients.array() -= coefficients.maxCoeff();
-  return coefficients.cwiseMax(-12.0);
+  return fit_normal.ldlt().solve(fit_right);
 }
 
 class Fit {
@@ -173,13 +193,15 @@ class Fit {
 
   int run() {
     start();
+    bool choosing = false;
+    int choices = 0;
     for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
       const ResponseSpline curve(coefficients_);
-      const bool choice_stays = iteration > kByObservation + kByModel;
       for (Pixel& pixel : pixels_) {
         improve_rate(curve, pixel);
-        if (iteration > kByObservation && !choice_stays) choose(curve, pixel);
+        if (choosing && choices < kByModel) choose(curve, pixel);
       }
+      if (choosing) ++choices;
       reduced_ = Reduced{};
       for (const Pixel& pixel : pixels_) add(curve, pixel);
       if (reduced_.pixels < kFewestPixels) return 0;
@@ -188,8 +210,10 @@ class Fit {
       step *= std::min(1.0, 1.0 / std::max(1e-300, step.cwiseAbs().maxCoeff()));
       coefficients_ += step;
       fix_scale();
-      step.array() -= step.mean();
-      if (choice_stays && step.cwiseAbs().maxCoeff() < kConverged) return iteration;
+      step -= step.dot(scale_direction()) / ResponseSpline::kSplines * scale_direction();
+      const bool converged = step.cwiseAbs().maxCoeff() < kConverged;
+      if (converged && choices >= kByModel) return iteration;
+      choosing = choosing || converged || iteration >= kByObservation;
     }
     return 0;
   }
@@ -199,22 +223,15 @@ class Fit {
   Matrix covariance() const { return regular().inverse(); }
 
  private:
-  static Matrix prior() {
-    Matrix bends = Matrix::Zero();
-    for (int k = 0; k + 2 < ResponseSpline::kCoefficients; ++k) {
-      Vector second = Vector::Zero();
-      second[k] = second[k + 2] = 1.0;
-      second[k + 1] = -2.0;
-      bends += second * second.transpose() / (kBendSigma * kBendSigma);
-    }
-    return bends;
-  }
   // The scale is nothing that the samples know: whatever is added here changes it alone.
-  Matrix regular() const { return reduced_.normal + prior() + Matrix::Constant(reduced_.normal.trace() / 100.0 + 1.0); }
+  Matrix regular() const {
+    return reduced_.normal + prior() +
+           (reduced_.normal.trace() / 100.0 + 1.0) * scale_direction() * scale_direction().transpose();
+  }
 
   void fix_scale() {
     const double factor = kReference / ResponseSpline(coefficients_).linear(kReference);
-    coefficients_.array() += std::log(factor);
+    coefficients_ += std::log(factor) * scale_direction();
     for (Pixel& pixel : pixels_) pixel.rate *= factor;
   }
 
@@ -243,7 +260,7 @@ class Fit {
     at.residual = sample.u - at.predicted;
     at.weight = 1.0 / (sensor_.reads + sensor_.shot * std::max(light, 0.0) / (slope * slope));
     at.by_rate = sample.time_s / slope;
-    at.by_curve = -curve.linear_gradient(at.predicted) / slope;
+    at.slope = slope;
     return at;
   }
 
@@ -256,7 +273,7 @@ class Fit {
   }
 
   void improve_rate(const ResponseSpline& curve, Pixel& pixel) const {
-    for (int step = 0; step < 3; ++step) {
+    for (int step = 0; step < 2; ++step) {
       double normal = 0.0, right = 0.0;
       for (const Sample& sample : pixel.samples) {
         if (!sample.counts) continue;
@@ -276,9 +293,10 @@ class Fit {
     for (const Sample& sample : pixel.samples) {
       if (!sample.counts) continue;
       const Linearised at = linearised(curve, sample, pixel.rate);
-      own += at.weight * at.by_curve * at.by_curve.transpose();
-      right += at.weight * at.by_curve * at.residual;
-      mixed += at.weight * at.by_rate * at.by_curve;
+      const Vector by_curve = -curve.linear_gradient(at.predicted) / at.slope;
+      own += at.weight * by_curve * by_curve.transpose();
+      right += at.weight * by_curve * at.residual;
+      mixed += at.weight * at.by_rate * by_curve;
       normal += at.weight * at.by_rate * at.by_rate;
       rate_right += at.weight * at.by_rate * at.residual;
       chi_square += at.weight * at.residual * at.residual;
