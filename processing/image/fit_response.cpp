@@ -14,14 +14,15 @@ namespace {
 using Vector = ResponseSpline::Vector;
 using Matrix = Eigen::Matrix<double, ResponseSpline::kCoefficients, ResponseSpline::kCoefficients>;
 
-constexpr int kMostPixels = 12'000, kFewestPixels = 200, kMostIterations = 40;
+constexpr int kMostPixels = 40'000, kFewestPixels = 200, kMostIterations = 40;
 constexpr int kCandidates = 200'000;
 constexpr int kByObservation = 12;    // iterations in which the samples choose themselves, until the curve can
 constexpr int kByModel = 4;           // then the curve chooses them so often; then the choice stays
 constexpr double kClearSigmas = 4.0;  // of a prediction from clipping
+constexpr double kDimmest = 25.0;     // electrons: below, a curve bends within the shot noise and the mean code is not F(mean)
 constexpr double kOutlierSigmas = 6.0;
 constexpr double kBendSigma = 3.0;    // prior on second differences of the log slope: a decade is 2.3
-constexpr double kConverged = 1e-5;
+constexpr double kConverged = 0.01;
 constexpr double kWorstRelativeSigma = 0.05;
 constexpr int kPoints = 65;
 constexpr double kReference = 0.5;
@@ -205,13 +206,14 @@ class Fit {
       reduced_ = Reduced{};
       for (const Pixel& pixel : pixels_) add(curve, pixel);
       if (reduced_.pixels < kFewestPixels) return 0;
-      Vector step = regular().ldlt().solve(reduced_.right - prior() * coefficients_);
+      const Vector slope = reduced_.right - prior() * coefficients_;
+      Vector step = regular().ldlt().solve(slope);
       if (!step.allFinite()) return 0;
       step *= std::min(1.0, 1.0 / std::max(1e-300, step.cwiseAbs().maxCoeff()));
       coefficients_ += step;
       fix_scale();
-      step -= step.dot(scale_direction()) / ResponseSpline::kSplines * scale_direction();
-      const bool converged = step.cwiseAbs().maxCoeff() < kConverged;
+      // In units of chi-square: a coefficient that the samples do not know may move on for ever.
+      const bool converged = slope.dot(step) < kConverged;
       if (converged && choices >= kByModel) return iteration;
       choosing = choosing || converged || iteration >= kByObservation;
     }
@@ -267,7 +269,8 @@ class Fit {
   void choose(const ResponseSpline& curve, Pixel& pixel) const {
     for (Sample& sample : pixel.samples) {
       const Linearised at = linearised(curve, sample, pixel.rate);
-      sample.counts = at.predicted < sensor_.usable - kClearSigmas / std::sqrt(at.weight) &&
+      const double light = pixel.rate * sample.time_s;
+      sample.counts = light > kDimmest * sensor_.shot && at.predicted < sensor_.usable - kClearSigmas / std::sqrt(at.weight) &&
                       at.residual * at.residual * at.weight < kOutlierSigmas * kOutlierSigmas;
     }
   }
