@@ -14,19 +14,22 @@ namespace {
 using Vector = ResponseSpline::Vector;
 using Matrix = Eigen::Matrix<double, ResponseSpline::kCoefficients, ResponseSpline::kCoefficients>;
 
-constexpr int kMostPixels = 12'000, kFewestPixels = 200, kMostIterations = 40;
+constexpr int kMostPixels = 40'000, kFewestPixels = 200, kMostIterations = 40;
 constexpr int kCandidates = 200'000;
-constexpr int kByObservation = 4;     // iterations in which the samples choose themselves, until the curve can
+constexpr int kByObservation = 12;    // iterations in which the samples choose themselves, until the curve can
+constexpr int kByModel = 4;           // then the curve chooses them so often; then the choice stays
 constexpr double kClearSigmas = 4.0;  // of a prediction from clipping
+constexpr double kDimmest = 25.0;     // electrons: below, a curve bends within the shot noise and the mean code is not F(mean)
 constexpr double kOutlierSigmas = 6.0;
 constexpr double kBendSigma = 3.0;    // prior on second differences of the log slope: a decade is 2.3
-constexpr double kConverged = 1e-6;
+constexpr double kConverged = 0.01;
 constexpr double kWorstRelativeSigma = 0.05;
 constexpr int kPoints = 65;
 constexpr double kReference = 0.5;
 
 struct Sample {
   double u, time_s;
+  bool counts;
 };
 struct Pixel {
   std::vector<Sample> samples;  // codes in units of the range, over black
@@ -63,8 +66,9 @@ Pixel pixel_of(const std::vector<Frame>& bracket, std::size_t i, const LinearSen
   double sum = 0.0, time_s = 0.0;
   for (const Frame& frame : bracket) {
     const double u = (frame.samples[i] - sensor.black_level_dn) / scaled.range_dn;
-    pixel.samples.push_back({u, frame.reported.exposure_s});
-    if (u >= scaled.usable) continue;
+    const bool counts = u < scaled.usable;
+    pixel.samples.push_back({u, frame.reported.exposure_s, counts});
+    if (!counts) continue;
     sum += u;
     time_s += frame.reported.exposure_s;
   }
@@ -106,10 +110,81 @@ struct Reduced {
   int pixels = 0;
 };
 
+// A sample about the curve's prediction.
 struct Linearised {
-  double residual, weight, by_rate, predicted;
-  Vector by_curve;
+  double residual, weight, by_rate, predicted, slope;
 };
+
+// How much the spline bends, squared: a quadratic form of its coefficients.
+Matrix bends() {
+  Matrix sum = Matrix::Zero();
+  for (int k = 0; k + 2 < ResponseSpline::kSplines; ++k) {
+    Vector second = Vector::Zero();
+    second[k] = second[k + 2] = 1.0;
+    second[k + 1] = -2.0;
+    sum += second * second.transpose();
+  }
+  return sum;
+}
+Matrix prior() { return bends() / (kBendSigma * kBendSigma); }
+// What changes the curve's scale and nothing else.
+Vector scale_direction() {
+  Vector direction = Vector::Ones();
+  direction[ResponseSpline::kSplines] = 0.0;
+  return direction;
+}
+
+// See Fit::start. Basis: log u and splines over the square root of u.
+Vector starting_curve(const std::vector<Pixel>& pixels, const Scaled& sensor) {
+  constexpr int kTerms = ResponseSpline::kCoefficients + 1;
+  using Terms = Eigen::Matrix<double, kTerms, 1>;
+  const auto terms = [](double u) {
+    Terms row;
+    row << std::log(u), ResponseSpline::basis(u);
+    return row;
+  };
+  Eigen::Matrix<double, kTerms, kTerms> normal = 1e-3 * Eigen::Matrix<double, kTerms, kTerms>::Identity();
+  normal.bottomRightCorner<ResponseSpline::kCoefficients, ResponseSpline::kCoefficients>() += bends();
+  Terms right = 1e-3 * Terms::Unit(0);  // without any light: a straight line
+  double lowest = 1.0;
+  for (const Pixel& pixel : pixels) {
+    double weights = 0.0, mean_log_s = 0.0;
+    Terms mean = Terms::Zero();
+    for (int pass = 0; pass < 2; ++pass) {
+      for (const Sample& sample : pixel.samples) {
+        const double variance = sensor.reads + sensor.shot * std::max(sample.u, 0.0);
+        if (!sample.counts || sample.u < 5.0 * std::sqrt(variance)) continue;
+        const double weight = sample.u * sample.u / variance;
+        const Terms row = terms(sample.u);
+        if (pass == 0) {
+          weights += weight;
+          mean += weight * row;
+          mean_log_s += weight * std::log(sample.time_s);
+          lowest = std::min(lowest, sample.u);
+        } else {
+          const Terms off = row - mean / weights;
+          normal += weight * off * off.transpose();
+          right += weight * off * (std::log(sample.time_s) - mean_log_s / weights);
+        }
+      }
+      if (weights == 0.0) break;
+    }
+  }
+  const Terms solution = normal.ldlt().solve(right);
+  // From log L to log slope, and that to the spline.
+  Matrix fit_normal = 0.1 * bends() + 1e-9 * Matrix::Identity();
+  Vector fit_right = Vector::Zero();
+  for (int i = 5; i <= 100; ++i) {
+    const double u = std::pow(0.01 * i, 2), delta = 1e-3 * u;
+    if (u < lowest) continue;
+    const double below = solution.dot(terms(u - delta)), above = solution.dot(terms(std::min(u + delta, 1.0)));
+    const double steepness = std::max((above - below) / (std::min(u + delta, 1.0) - u + delta), 0.1 / u);
+    const Vector row = ResponseSpline::basis(u);
+    fit_normal += row * row.transpose();
+    fit_right += row * (solution.dot(terms(u)) + std::log(steepness));
+  }
+  return fit_normal.ldlt().solve(fit_right);
+}
 
 class Fit {
  public:
@@ -118,20 +193,29 @@ class Fit {
   }
 
   int run() {
+    start();
+    bool choosing = false;
+    int choices = 0;
     for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
       const ResponseSpline curve(coefficients_);
-      const bool by_model = iteration > kByObservation;
-      for (Pixel& pixel : pixels_) improve_rate(curve, by_model, pixel);
+      for (Pixel& pixel : pixels_) {
+        improve_rate(curve, pixel);
+        if (choosing && choices < kByModel) choose(curve, pixel);
+      }
+      if (choosing) ++choices;
       reduced_ = Reduced{};
-      for (const Pixel& pixel : pixels_) add(curve, by_model, pixel);
+      for (const Pixel& pixel : pixels_) add(curve, pixel);
       if (reduced_.pixels < kFewestPixels) return 0;
-      Vector step = regular().ldlt().solve(reduced_.right - prior() * coefficients_);
+      const Vector slope = reduced_.right - prior() * coefficients_;
+      Vector step = regular().ldlt().solve(slope);
       if (!step.allFinite()) return 0;
       step *= std::min(1.0, 1.0 / std::max(1e-300, step.cwiseAbs().maxCoeff()));
       coefficients_ += step;
       fix_scale();
-      step.array() -= step.mean();
-      if (by_model && step.cwiseAbs().maxCoeff() < kConverged) return iteration;
+      // In units of chi-square: a coefficient that the samples do not know may move on for ever.
+      const bool converged = slope.dot(step) < kConverged;
+      if (converged && choices >= kByModel) return iteration;
+      choosing = choosing || converged || iteration >= kByObservation;
     }
     return 0;
   }
@@ -141,67 +225,81 @@ class Fit {
   Matrix covariance() const { return regular().inverse(); }
 
  private:
-  static Matrix prior() {
-    Matrix bends = Matrix::Zero();
-    for (int k = 0; k + 2 < ResponseSpline::kCoefficients; ++k) {
-      Vector second = Vector::Zero();
-      second[k] = second[k + 2] = 1.0;
-      second[k + 1] = -2.0;
-      bends += second * second.transpose() / (kBendSigma * kBendSigma);
-    }
-    return bends;
-  }
   // The scale is nothing that the samples know: whatever is added here changes it alone.
-  Matrix regular() const { return reduced_.normal + prior() + Matrix::Constant(reduced_.normal.trace() / 100.0 + 1.0); }
+  Matrix regular() const {
+    return reduced_.normal + prior() +
+           (reduced_.normal.trace() / 100.0 + 1.0) * scale_direction() * scale_direction().transpose();
+  }
 
   void fix_scale() {
     const double factor = kReference / ResponseSpline(coefficients_).linear(kReference);
-    coefficients_.array() += std::log(factor);
+    coefficients_ += std::log(factor) * scale_direction();
     for (Pixel& pixel : pixels_) pixel.rate *= factor;
   }
 
-  // False if the sample does not count.
-  bool linearise(const ResponseSpline& curve, const Sample& sample, double rate, bool by_model, Linearised& at) const {
-    if (!by_model && sample.u >= sensor_.usable) return false;
-    const double light = rate * sample.time_s;
-    at.predicted = curve.inverse(light);
-    const double slope = curve.slope(at.predicted);
-    const double variance = sensor_.reads + sensor_.shot * std::max(light, 0.0) / (slope * slope);
-    at.residual = sample.u - at.predicted;
-    if (by_model && (at.predicted > sensor_.usable - kClearSigmas * std::sqrt(variance) ||
-                     at.residual * at.residual > kOutlierSigmas * kOutlierSigmas * variance)) {
-      return false;
+  // Debevec and Malik's equations with a curve of few parameters: log L = log rate + log time is linear in them. The
+  // errors of dim samples are not what it thinks, so it only starts the rest.
+  void start() {
+    coefficients_ = starting_curve(pixels_, sensor_);
+    const ResponseSpline curve(coefficients_);
+    for (Pixel& pixel : pixels_) {
+      double light = 0.0, time_s = 0.0;
+      for (const Sample& sample : pixel.samples) {
+        if (!sample.counts) continue;
+        light += curve.linear(std::max(sample.u, 0.0));
+        time_s += sample.time_s;
+      }
+      pixel.rate = time_s > 0.0 ? std::max(light / time_s, 1e-12) : 0.0;
     }
-    at.weight = 1.0 / variance;
-    at.by_rate = sample.time_s / slope;
-    at.by_curve = -curve.linear_gradient(at.predicted) / slope;
-    return true;
+    fix_scale();
   }
 
-  void improve_rate(const ResponseSpline& curve, bool by_model, Pixel& pixel) const {
-    for (int step = 0; step < 3; ++step) {
+  Linearised linearised(const ResponseSpline& curve, const Sample& sample, double rate) const {
+    const double light = rate * sample.time_s;
+    Linearised at;
+    at.predicted = curve.inverse(light);
+    const double slope = curve.slope(at.predicted);
+    at.residual = sample.u - at.predicted;
+    at.weight = 1.0 / (sensor_.reads + sensor_.shot * std::max(light, 0.0) / (slope * slope));
+    at.by_rate = sample.time_s / slope;
+    at.slope = slope;
+    return at;
+  }
+
+  void choose(const ResponseSpline& curve, Pixel& pixel) const {
+    for (Sample& sample : pixel.samples) {
+      const Linearised at = linearised(curve, sample, pixel.rate);
+      const double light = pixel.rate * sample.time_s;
+      sample.counts = light > kDimmest * sensor_.shot && at.predicted < sensor_.usable - kClearSigmas / std::sqrt(at.weight) &&
+                      at.residual * at.residual * at.weight < kOutlierSigmas * kOutlierSigmas;
+    }
+  }
+
+  void improve_rate(const ResponseSpline& curve, Pixel& pixel) const {
+    for (int step = 0; step < 2; ++step) {
       double normal = 0.0, right = 0.0;
-      Linearised at;
       for (const Sample& sample : pixel.samples) {
-        if (!linearise(curve, sample, pixel.rate, by_model, at)) continue;
+        if (!sample.counts) continue;
+        const Linearised at = linearised(curve, sample, pixel.rate);
         normal += at.weight * at.by_rate * at.by_rate;
         right += at.weight * at.by_rate * at.residual;
       }
-      if (normal > 0.0) pixel.rate = std::max(pixel.rate + right / normal, 1e-3 * pixel.rate);
+      if (normal > 0.0) pixel.rate = std::max(pixel.rate + right / normal, 0.1 * pixel.rate);
     }
   }
 
-  void add(const ResponseSpline& curve, bool by_model, const Pixel& pixel) {
+  void add(const ResponseSpline& curve, const Pixel& pixel) {
     Matrix own = Matrix::Zero();
     Vector right = Vector::Zero(), mixed = Vector::Zero();
     double normal = 0.0, rate_right = 0.0, chi_square = 0.0;
     int count = 0;
-    Linearised at;
     for (const Sample& sample : pixel.samples) {
-      if (!linearise(curve, sample, pixel.rate, by_model, at)) continue;
-      own += at.weight * at.by_curve * at.by_curve.transpose();
-      right += at.weight * at.by_curve * at.residual;
-      mixed += at.weight * at.by_rate * at.by_curve;
+      if (!sample.counts) continue;
+      const Linearised at = linearised(curve, sample, pixel.rate);
+      const Vector by_curve = -curve.linear_gradient(at.predicted) / at.slope;
+      own += at.weight * by_curve * by_curve.transpose();
+      right += at.weight * by_curve * at.residual;
+      mixed += at.weight * at.by_rate * by_curve;
       normal += at.weight * at.by_rate * at.by_rate;
       rate_right += at.weight * at.by_rate * at.residual;
       chi_square += at.weight * at.residual * at.residual;

@@ -14,18 +14,19 @@ std::array<double, 4> blends(double t) {
           t * t * t / 6.0};
 }
 
+}  // namespace
+
 // Knots equidistant in the square root: response curves bend most near black.
-ResponseSpline::Vector basis(double u) {
-  constexpr int kSpans = ResponseSpline::kCoefficients - 3;
+ResponseSpline::Vector ResponseSpline::basis(double u) {
+  constexpr int kSpans = kSplines - 3;
   const double at = std::sqrt(std::clamp(u, 0.0, 1.0)) * kSpans;
   const int span = std::min(static_cast<int>(at), kSpans - 1);
   const std::array<double, 4> blend = blends(at - span);
-  ResponseSpline::Vector values = ResponseSpline::Vector::Zero();
+  Vector values = Vector::Zero();
   for (int k = 0; k < 4; ++k) values[span + k] = blend[static_cast<std::size_t>(k)];
+  values[kSplines] = std::log(std::clamp(u, 0.0, 1.0) + 0.002);
   return values;
 }
-
-}  // namespace
 
 // Simpson's rule over cells equidistant in the square root as well: the spline is smooth in it.
 ResponseSpline::ResponseSpline(const Vector& c) {

@@ -40,7 +40,7 @@ inline std::vector<Frame> curved_bracket(const CurvedResponse& response, const L
                                          const std::vector<double>& exposures_s, std::uint64_t seed, int pixels = 40'000) {
   std::mt19937_64 random(seed);
   const double range_dn = sensor.clip_dn - sensor.black_level_dn, top = std::ldexp(1.0, bits) - 1.0;
-  std::uniform_real_distribution<double> decades(-2.2, 0.6);
+  std::uniform_real_distribution<double> decades(-3.5, 0.6);
   std::normal_distribution<double> normal;
   double middle_s = 1.0;
   for (const double exposure_s : exposures_s) middle_s *= std::pow(exposure_s, 1.0 / static_cast<double>(exposures_s.size()));
