@@ -71,7 +71,7 @@ struct GrayCardDescription {
   double size_m = 0;  // edge of the square
   Eigen::Vector3d up_in_rig = Eigen::Vector3d::UnitZ();  // an edge's direction
   // Tags fixed to the card's frame: where they stand against the card is known, where both stand in the rig roughly.
-  std::vector<int> tag_ids;
+  std::vector<int> tag_ids = {};
 };
 
 // An AprilTag of the family tag36h11 that stands still in the rig or turns with the table.
