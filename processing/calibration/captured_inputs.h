@@ -5,7 +5,6 @@
 
 #include "processing/calibration/captured_frames.h"
 #include "processing/calibration/lens/camera_model.h"
-#include "processing/calibration/light/sphere_shots.h"
 #include "processing/image/linear_sensor.h"
 #include "processing/surface/mesh.h"
 #include "rig/capture_plan.h"
@@ -22,6 +21,9 @@ struct CapturedInputs {
 };
 
 // The frames of one view.
+struct SphereShots {
+  FrameRecord ring, point;
+};
 struct ViewFrames {
   std::vector<FrameRecord> bracket;  // at least one
   FrameRecord silhouette;

@@ -8,6 +8,7 @@
 #include "drivers/error.h"
 #include "processing/calibration/calibrated_views_file.h"
 #include "processing/calibration/captured_inputs.h"
+#include "processing/calibration/light/sphere_shots.h"
 #include "processing/calibration/pose/object_mask.h"
 #include "processing/calibration/session_card.h"
 #include "processing/calibration/session_lamp.h"

@@ -27,16 +27,6 @@ ArmAlignment align_arm(const LightPositionerDescription& nominal, const LightSol
   return ArmAlignment(nominal, measured);
 }
 
-// Per axis: the least over the views of what the sphere line adds.
-double shared_sigma(const LightSolution& solution) {
-  std::vector<double> variances;
-  for (const MeasuredLight& light : solution.lights) {
-    if (light.measured) variances.push_back(((light.covariance - light.own_covariance).trace()) / 3.0);
-  }
-  if (variances.empty()) return 0.0;
-  return std::sqrt(std::max(0.0, *std::min_element(variances.begin(), variances.end())));
-}
-
 LightSummary summarise(const std::string& name, const MeasuredLight& measured, const ArmSample& sample,
                        const ArmAlignment& arm) {
   LightSummary light;
@@ -60,7 +50,7 @@ double per_axis_sigma(const Eigen::Matrix3d& covariance) { return std::sqrt(cova
 SessionLights align_lights(LightSolution spheres, const std::vector<ViewFrames>& views, const CapturePlan& plan,
                            const RigDescription& rig, const Eigen::Isometry3d& camera_from_rig) {
   const std::vector<ArmSample> samples = arm_samples(spheres, views, camera_from_rig.inverse());
-  SessionLights lights{spheres, align_arm(rig.light_positioner, spheres, samples), {}, shared_sigma(spheres), {}};
+  SessionLights lights{spheres, align_arm(rig.light_positioner, spheres, samples), {}, per_axis_sigma(spheres.shared_covariance), {}};
   for (std::size_t v = 0; v < views.size(); ++v) {
     LightSummary light = summarise(plan.views[v].name, spheres.lights[v], samples[v], lights.arm);
     lights.in_rig.push_back(light.from_spheres

@@ -29,20 +29,6 @@ struct SeenHighlight {
 };
 using SeenInView = std::vector<SeenHighlight>;
 
-class SphereShotReader {
- public:
-  SphereShotReader(const CapturedFrames& frames, const DarkLibrary& darks, const LinearSensor& sensor)
-      : frames_(frames), darks_(darks), sensor_(sensor) {}
-  MosaicRadiance read(const FrameRecord& record) const {
-    return merge_bracket({frames_.load(record)}, darks_, sensor_);
-  }
-
- private:
-  const CapturedFrames& frames_;
-  const DarkLibrary& darks_;
-  const LinearSensor& sensor_;
-};
-
 using ShapeOn = std::function<HighlightShape(int sphere)>;
 
 void fit_all(const MosaicRadiance& image, const std::optional<ColourBalance>& balance, const ShapeOn& shape,
@@ -56,7 +42,7 @@ using RecordOf = std::function<const FrameRecord&(std::size_t view)>;
 using Find = std::function<SeenInView(const MosaicRadiance&)>;
 
 // Finds highlights in every view's shot and fits them with free colours.
-std::vector<SeenInView> find_highlights(std::size_t views, const SphereShotReader& reader, const RecordOf& record,
+std::vector<SeenInView> find_highlights(std::size_t views, const RadianceReader& reader, const RecordOf& record,
                                         const Find& find, const ShapeOn& shape, const std::function<void()>& step) {
   std::vector<SeenInView> seen(views);
   tbb::parallel_for(std::size_t{0}, views, [&](std::size_t v) {
@@ -69,7 +55,7 @@ std::vector<SeenInView> find_highlights(std::size_t views, const SphereShotReade
 }
 
 // Fits them again, with the lamp's balance of colours that all of them have in common.
-void refit_highlights(const SphereShotReader& reader, const RecordOf& record, const ShapeOn& shape,
+void refit_highlights(const RadianceReader& reader, const RecordOf& record, const ShapeOn& shape,
                       std::vector<SeenInView>& seen) {
   std::vector<FittedHighlight> fits;
   for (const SeenInView& view : seen) {
@@ -173,10 +159,8 @@ HighlightShape ring_shape(const CameraModel& camera, const MirrorSphere& sphere,
 
 }  // namespace
 
-LightSolution measure_lights(const CapturedFrames& frames, const std::vector<SphereShots>& views,
-                             const DarkLibrary& darks, const LinearSensor& sensor, const CameraModel& camera,
-                             const RigDescription& rig, Progress& progress) {
-  const SphereShotReader reader(frames, darks, sensor);
+LightSolution measure_lights(const RadianceReader& reader, const std::vector<SphereShots>& views,
+                             const CameraModel& camera, const RigDescription& rig, Progress& progress) {
   std::atomic<std::int64_t> done{0};
   const auto step = [&] { progress.update(++done); };
   progress.begin("sphere shots", static_cast<std::int64_t>(2 * views.size()), "shots");
