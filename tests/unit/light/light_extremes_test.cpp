@@ -107,21 +107,22 @@ TEST(LightExtremes, SpheresNearlyBehindOneAnotherAreRefusedOrUncertain) {
 // the lights' own errors leave in that mean.
 TEST(LightExtremes, TheSharedErrorIsWhatTheSolutionSaysItIs) {
   SphereRig rig = simulated_sphere_rig();
-  for (int v = 0; v < 8; ++v) rig.lights.push_back({0.8 * std::cos(v), -0.6 + 0.1 * v, 0.5 - 0.05 * v});
+  rig.lights.resize(2);
+  for (int v = 0; v < 4; ++v) rig.lights.push_back({0.8 * std::cos(v), -0.6 + 0.1 * v, 0.5 - 0.05 * v});
   double seen2 = 0.0, stated2 = 0.0;
-  constexpr int kSeeds = 25;
+  constexpr int kSeeds = 100;
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
     const LightSolution solution = solved_lights(rig, noisy_highlights(rig, kSigma_px, seed));
     for (std::size_t i = 0; i < rig.lights.size(); ++i) {
       EXPECT_LE(solution.lights[i].own_covariance.trace(), 1.001 * solution.lights[i].covariance.trace());
       for (std::size_t j = 0; j < i; ++j) {
-        seen2 += (solution.lights[i].position - rig.lights[i]).dot(solution.lights[j].position - rig.lights[j]) / 66.0;
+        seen2 += (solution.lights[i].position - rig.lights[i]).dot(solution.lights[j].position - rig.lights[j]) / 15.0;
       }
     }
     stated2 += solution.shared_covariance.trace();
   }
   EXPECT_GT(stated2, 0.0);
-  EXPECT_NEAR(seen2 / stated2, 1.0, 0.5);  // some 2 degrees of freedom in 25 seeds: 0.2 one sigma
+  EXPECT_NEAR(seen2 / stated2, 1.0, 0.5);  // a single seed scatters by twice the stated: 0.2 one sigma for 100
 }
 
 TEST(LightExtremes, HiddenSpheresCostAccuracyNotTruth) {
