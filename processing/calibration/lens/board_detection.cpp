@@ -27,7 +27,8 @@ Grid find_corners(const MosaicRadiance& image, const BoardDescription& board) {
   if (!cv::findChessboardCornersSB(small, {board.columns, board.rows}, found, cv::CALIB_CB_NORMALIZE_IMAGE)) return {};
   Grid grid;
   // OpenCV has the centre of the top-left pixel at (0, 0).
-  for (const cv::Point2f& p : found) grid.emplace_back((p.x + 0.5) * picture.width / small.cols, (p.y + 0.5) * picture.height / small.rows);
+  for (const cv::Point2f& p : found)
+    grid.emplace_back((p.x + 0.5) * picture.width / small.cols, (p.y + 0.5) * picture.height / small.rows);
   const auto columns = static_cast<std::size_t>(board.columns);
   const Eigen::Vector2d right = grid[columns - 1] - grid[0], up = grid[grid.size() - columns] - grid[0];
   if (right.x() * up.y() - right.y() * up.x() > 0.0) {  // mirrored, y down: take the rows from the other end
@@ -48,11 +49,11 @@ void add_checkerboard(const MosaicRadiance& image, const BoardDescription& board
     for (int c = 0; c < board.columns; ++c) {
       const int c0 = std::max(0, c - 1), c1 = std::min(board.columns - 1, c + 1);
       const int r0 = std::max(0, r - 1), r1 = std::min(board.rows - 1, r + 1);
-      const auto corner =
-          measure_checker_corner(image, at(c, r), (at(c1, r) - at(c0, r)) / (c1 - c0), (at(c, r1) - at(c, r0)) / (r1 - r0));
+      const auto corner = measure_checker_corner(image, at(c, r), (at(c1, r) - at(c0, r)) / (c1 - c0),
+                                                 (at(c, r1) - at(c, r0)) / (r1 - r0));
       if (!corner) continue;
-      const Eigen::Vector3d x((c - 0.5 * (board.columns - 1)) * board.pitch_m, (r - 0.5 * (board.rows - 1)) * board.pitch_m,
-                              0.0);
+      const Eigen::Vector3d x((c - 0.5 * (board.columns - 1)) * board.pitch_m,
+                              (r - 0.5 * (board.rows - 1)) * board.pitch_m, 0.0);
       sighting.landmarks.push_back({{x}, {corner->pixel}, corner->covariance_px2});
     }
   }
@@ -69,11 +70,11 @@ void add_tags(const MosaicRadiance& image, const BoardDescription& board, const 
     const int c = place % board.columns, r = place / board.columns;
     TagDescription printed;
     printed.size_m = board.tag_size_m;
-    printed.centre = {(c - 0.5 * (board.columns - 1)) * board.pitch_m, (r - 0.5 * (board.rows - 1)) * board.pitch_m, 0.0};
+    printed.centre = {(c - 0.5 * (board.columns - 1)) * board.pitch_m, (r - 0.5 * (board.rows - 1)) * board.pitch_m,
+                      0.0};
     const auto corners = printed.corners();
-    sighting.landmarks.push_back({{corners.begin(), corners.end()},
-                                  {tag.corners_px.begin(), tag.corners_px.end()},
-                                  tag.covariance_px2});
+    sighting.landmarks.push_back(
+        {{corners.begin(), corners.end()}, {tag.corners_px.begin(), tag.corners_px.end()}, tag.covariance_px2});
   }
 }
 
@@ -84,8 +85,10 @@ BoardSighting detect_board(const MosaicRadiance& image, const BoardDescription& 
   const bool checkered = board.pattern == BoardDescription::Pattern::Checkerboard;
   const int least = checkered ? 3 : 1;  // what OpenCV needs
   if (board.columns < least || board.rows < least || !(board.pitch_m > 0.0))
-    throw BadInput("board", std::to_string(board.columns) + " x " + std::to_string(board.rows) + ", pitch " +
-                                std::to_string(board.pitch_m) + " m", "at least 3 x 3 inner corners or 1 x 1 tags, pitch > 0");
+    throw BadInput("board",
+                   std::to_string(board.columns) + " x " + std::to_string(board.rows) + ", pitch " +
+                       std::to_string(board.pitch_m) + " m",
+                   "at least 3 x 3 inner corners or 1 x 1 tags, pitch > 0");
   BoardSighting sighting{name, {}};
   if (checkered) {
     add_checkerboard(image, board, sighting);

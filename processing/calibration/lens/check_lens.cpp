@@ -48,7 +48,8 @@ Stacked stacked(const CameraModel& camera, const std::vector<BoardSighting>& sig
 }
 
 // The size of a change along `direction` that is seen 19 times in 20 at a false alarm rate of 1 in 100.
-double detectable(const Eigen::MatrixXd& response, const Eigen::LDLT<Eigen::MatrixXd>& expected, const LensVector& direction) {
+double detectable(const Eigen::MatrixXd& response, const Eigen::LDLT<Eigen::MatrixXd>& expected,
+                  const LensVector& direction) {
   // A chi square of 8 degrees with this non-centrality passes its 99 % bound 19 times in 20.
   constexpr double kNonCentrality = 31.7;
   const Eigen::VectorXd shift = response * direction;
@@ -60,15 +61,20 @@ double detectable(const Eigen::MatrixXd& response, const Eigen::LDLT<Eigen::Matr
 
 const char* to_string(LensVerdict verdict) {
   switch (verdict) {
-    case LensVerdict::Holds: return "holds";
-    case LensVerdict::Changed: return "changed";
-    case LensVerdict::Unclear: return "unclear";
+    case LensVerdict::Holds:
+      return "holds";
+    case LensVerdict::Changed:
+      return "changed";
+    case LensVerdict::Unclear:
+      return "unclear";
   }
   return "?";
 }
 
-LensCheck check_lens(const CameraModel& camera, const LensMatrix& covariance, const std::vector<BoardSighting>& sightings) {
-  if (!covariance.allFinite()) throw BadInput("lens check", "a covariance that is not finite", "that of a usable calibration");
+LensCheck check_lens(const CameraModel& camera, const LensMatrix& covariance,
+                     const std::vector<BoardSighting>& sightings) {
+  if (!covariance.allFinite())
+    throw BadInput("lens check", "a covariance that is not finite", "that of a usable calibration");
   LensCheck check;
   const Stacked all = stacked(camera, sightings, check.rms_px);
   const Eigen::Index rest = all.residual.size() - kLensParameters;
@@ -77,8 +83,10 @@ LensCheck check_lens(const CameraModel& camera, const LensMatrix& covariance, co
     return check;
   }
   // In units of what each parameter does, so that the singular values compare.
-  const LensVector scale = all.slope.colwise().norm().cwiseMax(std::numeric_limits<double>::min()).cwiseInverse().transpose();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(all.slope * scale.asDiagonal(), Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const LensVector scale =
+      all.slope.colwise().norm().cwiseMax(std::numeric_limits<double>::min()).cwiseInverse().transpose();
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(all.slope * scale.asDiagonal(),
+                                              Eigen::ComputeThinU | Eigen::ComputeThinV);
   constexpr double kRounding = 1e-7;
   const Eigen::Index rank = (svd.singularValues().array() > kRounding * svd.singularValues()[0]).count();
   const Eigen::VectorXd u = svd.matrixU().leftCols(rank).transpose() * all.residual;
@@ -105,9 +113,9 @@ LensCheck check_lens(const CameraModel& camera, const LensMatrix& covariance, co
     return check;
   }
   check.verdict = check.chi2 > check.bound ? LensVerdict::Changed : LensVerdict::Holds;
-  check.reason = "chi square " + number(check.chi2) + " of " + number(check.degrees) + ", bound " + number(check.bound) +
-                 "; would notice " + number(100.0 * check.detectable_focal) + " % of focal length, " +
-                 number(check.detectable_principal_px) + " px of principal point";
+  check.reason = "chi square " + number(check.chi2) + " of " + number(check.degrees) + ", bound " +
+                 number(check.bound) + "; would notice " + number(100.0 * check.detectable_focal) +
+                 " % of focal length, " + number(check.detectable_principal_px) + " px of principal point";
   return check;
 }
 

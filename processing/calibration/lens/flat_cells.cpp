@@ -9,7 +9,8 @@
 namespace lumitexel {
 
 std::vector<FlatCell> flat_cells(const MosaicRadiance& flat, int across, int first_level) {
-  const int edge = 2 * std::max(1, std::max(flat.width, flat.height) / (2 * across));  // even: every cell has every colour
+  const int edge =
+      2 * std::max(1, std::max(flat.width, flat.height) / (2 * across));  // even: every cell has every colour
   const int colours = mosaic_channels(flat.mosaic);
   std::vector<FlatCell> cells;
   for (int top = 0; top + edge <= flat.height; top += edge) {

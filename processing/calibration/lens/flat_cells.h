@@ -11,7 +11,7 @@ namespace lumitexel {
 struct FlatCell {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  // mean place of its samples
   double value = 0, sigma = 0;
-  int level = 0;         // which colour of which flat
+  int level = 0;  // which colour of which flat
   int column = 0, row = 0;
 };
 

@@ -35,7 +35,8 @@ void check(int width_px, int height_px, const std::vector<BoardSighting>& sighti
       bool finite = landmark.x_in_board.size() == landmark.pixels.size() && landmark.covariance_px2.rows() == n &&
                     landmark.covariance_px2.cols() == n && n > 0;
       for (std::size_t i = 0; finite && i < landmark.pixels.size(); ++i)
-        finite = landmark.pixels[i].allFinite() && landmark.x_in_board[i].allFinite() && landmark.x_in_board[i].z() == 0.0;
+        finite =
+            landmark.pixels[i].allFinite() && landmark.x_in_board[i].allFinite() && landmark.x_in_board[i].z() == 0.0;
       if (!finite || Eigen::LLT<Eigen::MatrixXd>(landmark.covariance_px2).info() != Eigen::Success)
         throw BadInput("lens calibration, board " + sighting.name, "a landmark that is not finite",
                        "as many pixels as points of the plane z = 0, and a positive definite covariance of them");
@@ -148,7 +149,8 @@ double tilt_spread_deg(const Boards& boards) {
   return std::acos(std::clamp(least, -1.0, 1.0)) * 180.0 / std::numbers::pi;
 }
 
-std::string undetermined(const LensCalibration& result, const std::optional<LensMatrix>& covariance, const Boards& boards) {
+std::string undetermined(const LensCalibration& result, const std::optional<LensMatrix>& covariance,
+                         const Boards& boards) {
   constexpr double kWorstFocal = 0.02, kParallel_deg = 10.0;
   double relative = std::numeric_limits<double>::infinity();
   if (covariance)
@@ -157,7 +159,8 @@ std::string undetermined(const LensCalibration& result, const std::optional<Lens
   if (relative < kWorstFocal) return "";
   std::string text = "the focal length is known to no better than " +
                      (relative < 10.0 ? number(100.0 * relative) + " %" : std::string("its own size"));
-  if (boards.placed.size() < 3) text += ", from " + std::to_string(boards.placed.size()) + " boards: photograph at least 3, better 10";
+  if (boards.placed.size() < 3)
+    text += ", from " + std::to_string(boards.placed.size()) + " boards: photograph at least 3, better 10";
   if (tilt_spread_deg(boards) < kParallel_deg)
     text += "; the boards are parallel within " + number(tilt_spread_deg(boards)) +
             " degrees: tilt them by 20 to 45 degrees, each another way";

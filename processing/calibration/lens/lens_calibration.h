@@ -1,8 +1,8 @@
 // Focal lengths, principal point and distortion from photographs of a flat board in many placements.
 //
-// The start is Zhang's ("A flexible new technique for camera calibration", 2000): a homography for each board. Then weighted least
-// squares over lens and placements (Ceres), each point with its own covariance. Boards that do not fit are rejected and listed;
-// distortion terms stay only if the data ask for them (lens_information.h).
+// The start is Zhang's ("A flexible new technique for camera calibration", 2000): a homography for each board. Then
+// weighted least squares over lens and placements (Ceres), each point with its own covariance. Boards that do not fit
+// are rejected and listed; distortion terms stay only if the data ask for them (lens_information.h).
 #pragma once
 
 #include <string>
@@ -16,9 +16,9 @@ namespace lumitexel {
 struct BoardFit {
   std::string name;
   Eigen::Isometry3d camera_from_board = Eigen::Isometry3d::Identity();
-  double rms_px = 0;         // root mean square distance of its points, both axes together
+  double rms_px = 0;  // root mean square distance of its points, both axes together
   double reduced_chi2 = 0;
-  std::string rejected;      // why; empty: used
+  std::string rejected;  // why; empty: used
 };
 
 struct LensCalibration {
@@ -34,11 +34,12 @@ struct LensCalibration {
   bool usable() const { return refusal.empty(); }
 };
 
-// A board is rejected if it has fewer than 6 points, or they lie on a line; or if, after the fit, its reduced chi square is over
-// 1 with less than one chance in a million and more than 9 times (3 times the RMS) the median's of all boards. Rejected boards are
-// tried again with the final camera. Refused: fewer than 2 boards left, or a focal length known to no better than 2 %, which is
-// what boards all parallel to the picture give. From 3 boards on everything else is a matter of the stated sigmas.
-// Throws BadInput on a picture without size or a landmark whose covariance is not positive or whose values are not finite.
+// A board is rejected if it has fewer than 6 points, or they lie on a line; or if, after the fit, its reduced chi
+// square is over 1 with less than one chance in a million and more than 9 times (3 times the RMS) the median's of all
+// boards. Rejected boards are tried again with the final camera. Refused: fewer than 2 boards left, or a focal length
+// known to no better than 2 %, which is what boards all parallel to the picture give. From 3 boards on everything else
+// is a matter of the stated sigmas. Throws BadInput on a picture without size or a landmark whose covariance is not
+// positive or whose values are not finite.
 LensCalibration calibrate_lens(int width_px, int height_px, const std::vector<BoardSighting>& sightings);
 
 }  // namespace lumitexel

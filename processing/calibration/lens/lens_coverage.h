@@ -17,7 +17,8 @@ struct LensCoverage {
 
 LensCoverage lens_coverage(int width_px, int height_px, const std::vector<BoardSighting>& sightings);
 
-// One sentence for each empty corner of the picture, and one if less than half of the cells hold a point: where to put the board.
+// One sentence for each empty corner of the picture, and one if less than half of the cells hold a point: where to put
+// the board.
 std::vector<std::string> coverage_warnings(const LensCoverage& coverage);
 
 }  // namespace lumitexel

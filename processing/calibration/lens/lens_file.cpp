@@ -26,7 +26,8 @@ json numbers(const Matrix& matrix) {
 template <typename Matrix>
 Matrix matrix_from(const json& list) {
   Matrix matrix;
-  if (!list.is_array() || list.size() != static_cast<std::size_t>(matrix.size())) throw Corrupt("a matrix of another size");
+  if (!list.is_array() || list.size() != static_cast<std::size_t>(matrix.size()))
+    throw Corrupt("a matrix of another size");
   for (Eigen::Index i = 0; i < matrix.size(); ++i) {
     matrix(i / matrix.cols(), i % matrix.cols()) = list[static_cast<std::size_t>(i)].get<double>();
   }
@@ -35,14 +36,10 @@ Matrix matrix_from(const json& list) {
 
 // What the fingerprint covers. Doubles are written so that they read back bit for bit.
 json identity(const LensRecord& r) {
-  json j = {{"camera_name", r.camera_name},
-            {"width_px", r.camera.width_px},
-            {"height_px", r.camera.height_px},
-            {"mosaic", to_string(r.mosaic)},
-            {"made_utc_s", r.made_utc_s},
-            {"params", numbers(lens_vector(r.camera))},
-            {"covariance", numbers(r.covariance)},
-            {"vignetting", nullptr}};
+  json j = {{"camera_name", r.camera_name},        {"width_px", r.camera.width_px},
+            {"height_px", r.camera.height_px},     {"mosaic", to_string(r.mosaic)},
+            {"made_utc_s", r.made_utc_s},          {"params", numbers(lens_vector(r.camera))},
+            {"covariance", numbers(r.covariance)}, {"vignetting", nullptr}};
   if (r.vignetting) {
     const Vignetting& v = *r.vignetting;
     j["vignetting"] = {{"principal_px", {v.principal_x_px, v.principal_y_px}},
@@ -89,7 +86,8 @@ LensRecord lens_record(const LensCalibration& calibration) {
   record.covariance = calibration.covariance;
   record.rms_px = calibration.rms_px;
   record.reduced_chi2 = calibration.reduced_chi2;
-  for (const BoardFit& board : calibration.boards) ++(board.rejected.empty() ? record.boards_used : record.boards_rejected);
+  for (const BoardFit& board : calibration.boards)
+    ++(board.rejected.empty() ? record.boards_used : record.boards_rejected);
   record.coverage = calibration.coverage;
   return record;
 }

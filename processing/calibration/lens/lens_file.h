@@ -28,20 +28,20 @@ struct LensRecord {
 // What a usable calibration says; name, mosaic, day and vignetting are the caller's to fill in.
 LensRecord lens_record(const LensCalibration& calibration);
 
-// SHA-256 over the camera's name, size and mosaic, the model, its covariance and the vignetting, bit for bit, and the time it
-// was made: what sessions and models note down as the lens they were made with.
+// SHA-256 over the camera's name, size and mosaic, the model, its covariance and the vignetting, bit for bit, and the
+// time it was made: what sessions and models note down as the lens they were made with.
 std::string lens_fingerprint(const LensRecord& record);
 
 bool lens_expired(const LensRecord& record, std::int64_t now_utc_s);
 
-// Why the record is not for this camera ("its calibration is of 6000 x 4000 pixels, …"); empty if it is. A name is compared
-// only if both have one.
+// Why the record is not for this camera ("its calibration is of 6000 x 4000 pixels, …"); empty if it is. A name is
+// compared only if both have one.
 std::string lens_mismatch(const LensRecord& record, const std::string& camera_name, const CameraLimits& limits);
 
 // Whole or not at all. Throws Error if it cannot be written.
 void write_lens_file(const std::filesystem::path& path, const LensRecord& record);
-// Throws BadInput if there is no such file; Corrupt naming it if it is not a lens file of this version, or if its contents are not
-// those that its fingerprint was made of.
+// Throws BadInput if there is no such file; Corrupt naming it if it is not a lens file of this version, or if its
+// contents are not those that its fingerprint was made of.
 LensRecord read_lens_file(const std::filesystem::path& path);
 
 }  // namespace lumitexel

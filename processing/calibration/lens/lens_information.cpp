@@ -70,8 +70,7 @@ std::optional<LensMatrix> lens_covariance(const LensInformation& information, co
   const Eigen::MatrixXd unit =
       solver.eigenvectors() * solver.eigenvalues().cwiseInverse().asDiagonal() * solver.eigenvectors().transpose();
   LensMatrix covariance = LensMatrix::Zero();
-  covariance(kept, kept) =
-      std::max(1.0, information.chi2 / spare) * (scale.asDiagonal() * unit * scale.asDiagonal());
+  covariance(kept, kept) = std::max(1.0, information.chi2 / spare) * (scale.asDiagonal() * unit * scale.asDiagonal());
   return covariance;
 }
 

@@ -14,7 +14,8 @@ struct Canvas {
   double scale;  // canvas pixels per photograph's pixel
   Canvas(const CameraModel& camera, int width_px)
       : image(std::max(16, width_px),
-              std::max(1, static_cast<int>(std::lround(static_cast<double>(std::max(16, width_px)) * camera.height_px / camera.width_px))),
+              std::max(1, static_cast<int>(std::lround(static_cast<double>(std::max(16, width_px)) * camera.height_px /
+                                                       camera.width_px))),
               3, 1.0f),
         scale(static_cast<double>(image.width) / camera.width_px) {}
   cv::Mat mat() { return cv::Mat(image.height, image.width, CV_32FC3, image.data.data()); }
@@ -87,22 +88,28 @@ Image distortion_picture(const CameraModel& camera, int width_px, double* magnif
     }
   }
   // The longest arrow between a tenth of a grid's pitch and the whole of it.
-  const double magnified = longest > 1e-9 ? std::pow(10.0, std::max(0.0, std::floor(std::log10(pitch / longest)))) : 1.0;
+  const double magnified =
+      longest > 1e-9 ? std::pow(10.0, std::max(0.0, std::floor(std::log10(pitch / longest)))) : 1.0;
   if (magnification != nullptr) *magnification = magnified;
   for (const auto& [pixel, step] : steps) {
-    cv::circle(canvas.mat(), fixed(canvas.scale * pixel), 1 << kFraction_bits, kInk, cv::FILLED, cv::LINE_8, kFraction_bits);
+    cv::circle(canvas.mat(), fixed(canvas.scale * pixel), 1 << kFraction_bits, kInk, cv::FILLED, cv::LINE_8,
+               kFraction_bits);
     arrow(canvas.mat(), canvas.scale * (pixel - magnified * step), canvas.scale * magnified * step, kRed);
   }
   return canvas.image;
 }
 
-Image vignetting_picture(const Vignetting& vignetting, const CameraModel& camera, int width_px, double least, double step) {
+Image vignetting_picture(const Vignetting& vignetting, const CameraModel& camera, int width_px, double least,
+                         double step) {
   Canvas canvas(camera, width_px);
-  const auto transmission = [&](int x, int y) { return vignetting.transmission({(x + 0.5) / canvas.scale, (y + 0.5) / canvas.scale}); };
+  const auto transmission = [&](int x, int y) {
+    return vignetting.transmission({(x + 0.5) / canvas.scale, (y + 0.5) / canvas.scale});
+  };
   for (int y = 0; y < canvas.image.height; ++y) {
     for (int x = 0; x < canvas.image.width; ++x) {
       const double t = transmission(x, y), band = std::floor(t / step);
-      const bool contour = std::floor(transmission(x + 1, y) / step) != band || std::floor(transmission(x, y + 1) / step) != band;
+      const bool contour =
+          std::floor(transmission(x + 1, y) / step) != band || std::floor(transmission(x, y + 1) / step) != band;
       const auto gray = static_cast<float>(std::clamp((t - least) / (1.0 - least), 0.0, 1.0));
       for (int c = 0; c < 3; ++c) canvas.image.at(x, y, c) = contour ? static_cast<float>(kRed[c]) : gray;
     }

@@ -95,8 +95,10 @@ PlacedBoard place_board(const CameraModel& camera, const BoardSighting& sighting
     const Eigen::Vector3d turn(turns[s].at<double>(0), turns[s].at<double>(1), turns[s].at<double>(2));
     if (!turn.allFinite()) continue;
     std::vector<PlacedBoard> trial{{sighting, Eigen::Isometry3d::Identity()}};
-    if (turn.norm() > 0.0) trial[0].camera_from_board.linear() = Eigen::AngleAxisd(turn.norm(), turn.normalized()).matrix();
-    trial[0].camera_from_board.translation() << shifts[s].at<double>(0), shifts[s].at<double>(1), shifts[s].at<double>(2);
+    if (turn.norm() > 0.0)
+      trial[0].camera_from_board.linear() = Eigen::AngleAxisd(turn.norm(), turn.normalized()).matrix();
+    trial[0].camera_from_board.translation() << shifts[s].at<double>(0), shifts[s].at<double>(1),
+        shifts[s].at<double>(2);
     CameraModel fixed = camera;
     refine_boards(fixed, LensMask{}, trial);
     const double chi2 = board_misfit(camera, trial[0]).chi2;

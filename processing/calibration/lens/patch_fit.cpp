@@ -55,7 +55,8 @@ std::vector<PatchSample> patch_samples(const MosaicRadiance& image, const Eigen:
   for (int y = std::max(0, first(least.y())); y <= std::min(image.height - 1, last(most.y())); ++y) {
     for (int x = std::max(0, first(least.x())); x <= std::min(image.width - 1, last(most.x())); ++x) {
       const std::size_t i = image.index(x, y);
-      if (!is_green(image.mosaic, x, y) || (image.flags[i] & kUnusablePixel) || !std::isfinite(image.value[i])) continue;
+      if (!is_green(image.mosaic, x, y) || (image.flags[i] & kUnusablePixel) || !std::isfinite(image.value[i]))
+        continue;
       const double variance = image.variance[i];
       samples.push_back({{x + 0.5, y + 0.5}, image.value[i], variance > 0.0 ? std::sqrt(variance) : 0.0, 0});
     }

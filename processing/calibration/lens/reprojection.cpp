@@ -149,7 +149,8 @@ PoseFreeResiduals pose_free_residuals(const CameraModel& camera, const PlacedBoa
     }
     at += n;
   }
-  if (rows <= 6) return {Eigen::VectorXd(0), Eigen::Matrix<double, Eigen::Dynamic, kLensParameters>(0, kLensParameters)};
+  if (rows <= 6)
+    return {Eigen::VectorXd(0), Eigen::Matrix<double, Eigen::Dynamic, kLensParameters>(0, kLensParameters)};
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(by_pose);
   const Eigen::VectorXd turned = qr.householderQ().adjoint() * residual;
   const Eigen::MatrixXd turned_slope = qr.householderQ().adjoint() * by_lens;

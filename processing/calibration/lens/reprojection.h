@@ -1,4 +1,5 @@
-// Boards re-projected through a camera: the residuals of the lens calibration, their linearisation and their least squares.
+// Boards re-projected through a camera: the residuals of the lens calibration, their linearisation and their least
+// squares.
 //
 // A landmark's residual is L^-1 (predicted - seen), L L^T its covariance: unit variance where the stated noise is true.
 #pragma once
@@ -25,8 +26,8 @@ struct PlacedBoard {
   Eigen::Isometry3d camera_from_board = Eigen::Isometry3d::Identity();
 };
 
-// Least squares over the camera's free parameters and all placements, which are changed in place. Landmarks beyond the 99.9 %
-// bound of chi square weigh less (Huber). Returns whether it converged.
+// Least squares over the camera's free parameters and all placements, which are changed in place. Landmarks beyond
+// the 99.9 % bound of chi square weigh less (Huber). Returns whether it converged.
 bool refine_boards(CameraModel& camera, const LensMask& free, std::vector<PlacedBoard>& boards);
 
 // The whitened residuals and their slope with respect to the lens, both freed of what the board's pose can explain (the

@@ -97,11 +97,13 @@ double edge_profile(const PatchSample& sample, const Bows& bows, const Eigen::Ve
 // Samples in a band about each edge that holds nothing but border and margin. Pixels near a corner see two edges.
 std::vector<PatchSample> edge_samples(const MosaicRadiance& image, const Corners& corners) {
   constexpr double kNearCorner_px = 2.5, kWidestBand_px = 4.0, kLeastBand_px = 1.0;
-  constexpr double kBitsBlur_px = 1.5, kMarginBlur_px = 0.5;  // how far inside bits, and outside what follows the margin, may show
+  constexpr double kBitsBlur_px = 1.5,
+                   kMarginBlur_px = 0.5;  // how far inside bits, and outside what follows the margin, may show
   const Eigen::Vector2d reach(kWidestBand_px, kWidestBand_px);
   std::vector<PatchSample> samples;
   for (int e = 0; e < 4; ++e) {
-    const Eigen::Vector2d &a = corners[static_cast<std::size_t>(e)], &b = corners[static_cast<std::size_t>((e + 1) % 4)];
+    const Eigen::Vector2d &a = corners[static_cast<std::size_t>(e)],
+                          &b = corners[static_cast<std::size_t>((e + 1) % 4)];
     const Eigen::Vector2d &c = corners[static_cast<std::size_t>((e + 2) % 4)],
                           &d = corners[static_cast<std::size_t>((e + 3) % 4)];
     const Edge edge(a, b);
@@ -133,7 +135,8 @@ Eigen::VectorXd edge_start(const std::vector<PatchSample>& samples, const Corner
   return start;
 }
 
-std::optional<DetectedTag> refined(const MosaicRadiance& image, const Found& found, const std::optional<CameraModel>& lens) {
+std::optional<DetectedTag> refined(const MosaicRadiance& image, const Found& found,
+                                   const std::optional<CameraModel>& lens) {
   double shortest = std::numeric_limits<double>::infinity();
   for (std::size_t c = 0; c < 4; ++c) {
     shortest = std::min(shortest, (found.corners[(c + 1) % 4] - found.corners[c]).norm());

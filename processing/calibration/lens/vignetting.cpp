@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -19,7 +20,8 @@ namespace {
 constexpr int kMostTerms = 3;
 
 Eigen::Vector3d powers(const Vignetting& v, const Eigen::Vector2d& pixel) {
-  const double x = (pixel.x() - v.principal_x_px) / v.half_diagonal_px, y = (pixel.y() - v.principal_y_px) / v.half_diagonal_px;
+  const double x = (pixel.x() - v.principal_x_px) / v.half_diagonal_px,
+               y = (pixel.y() - v.principal_y_px) / v.half_diagonal_px;
   const double r2 = x * x + y * y;
   return {r2, r2 * r2, r2 * r2 * r2};
 }
@@ -81,7 +83,8 @@ class FlatProblem {
     const double y = (cell.pixel.y() - place_.principal_y_px) / place_.half_diagonal_px;
     const double lens = 1.0 + power.dot(p.head<3>()), light = p[level] + p[level + 1] * x + p[level + 2] * y;
     Slope s{{0, 1, 2, level, level + 1, level + 2}, {}, (cell.value - lens * light) / cell.sigma};
-    for (int t = 0; t < kMostTerms; ++t) s.value[static_cast<std::size_t>(t)] = t < terms ? power[t] * light / cell.sigma : 0.0;
+    for (int t = 0; t < kMostTerms; ++t)
+      s.value[static_cast<std::size_t>(t)] = t < terms ? power[t] * light / cell.sigma : 0.0;
     s.value[3] = lens / cell.sigma, s.value[4] = lens * x / cell.sigma, s.value[5] = lens * y / cell.sigma;
     return s;
   }
@@ -94,7 +97,8 @@ class FlatProblem {
     return count > 0 ? sum / count : 1.0;
   }
 
-  FlatFit summary(const Eigen::VectorXd& p, const Eigen::MatrixXd& hessian, int terms, const std::vector<bool>& kept) const {
+  FlatFit summary(const Eigen::VectorXd& p, const Eigen::MatrixXd& hessian, int terms,
+                  const std::vector<bool>& kept) const {
     FlatFit fit;
     fit.parameters = p;
     fit.chi2 = 0;
@@ -106,7 +110,8 @@ class FlatProblem {
     }
     fit.degrees = count - terms - 3.0 * levels_;
     const Eigen::MatrixXd inverse = hessian.ldlt().solve(Eigen::MatrixXd::Identity(p.size(), p.size()));
-    fit.covariance.topLeftCorner(terms, terms) = inverse.topLeftCorner(terms, terms) * std::max(1.0, fit.chi2 / fit.degrees);
+    fit.covariance.topLeftCorner(terms, terms) =
+        inverse.topLeftCorner(terms, terms) * std::max(1.0, fit.chi2 / fit.degrees);
     return fit;
   }
 
@@ -134,7 +139,8 @@ std::vector<bool> clean_cells(const std::vector<FlatCell>& cells, const std::vec
     }
   }
   std::vector<bool> kept(cells.size());
-  for (std::size_t i = 0; i < cells.size(); ++i) kept[i] = !dusty.contains({cells[i].level, cells[i].column, cells[i].row});
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    kept[i] = !dusty.contains({cells[i].level, cells[i].column, cells[i].row});
   return kept;
 }
 
@@ -162,7 +168,7 @@ double Vignetting::sigma(const Eigen::Vector2d& pixel) const {
 
 VignettingFit fit_vignetting(const std::vector<MosaicRadiance>& flats, const CameraModel& camera) {
   check(flats, camera);
-  constexpr int kCellsAcross = 64, kRounds = 4;
+  constexpr int kCellsAcross = 40, kRounds = 4;
   VignettingFit result;
   Vignetting& v = result.vignetting;
   v.principal_x_px = camera.principal_x_px, v.principal_y_px = camera.principal_y_px;

@@ -22,7 +22,8 @@ struct Errors {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
 };
 
-Errors errors_of(const BoardSighting& sighting, const CameraModel& camera, const Eigen::Isometry3d& pose, bool half_turn) {
+Errors errors_of(const BoardSighting& sighting, const CameraModel& camera, const Eigen::Isometry3d& pose,
+                 bool half_turn) {
   Errors errors;
   double points = 0;
   for (const Landmark& landmark : sighting.landmarks) {
@@ -39,14 +40,16 @@ Errors errors_of(const BoardSighting& sighting, const CameraModel& camera, const
   return errors;
 }
 
-// All points, in the board's frame up to half a turn, with the project's pixel centres, as good as stated. 0.8 … 1.25: 80 values.
+// All points, in the board's frame up to half a turn, with the project's pixel centres, as good as stated. 0.8 … 1.25:
+// 80 values.
 TEST(BoardDetection, checkerboardCornersAreAsGoodAsTheySay) {
   const CameraModel camera = distorted_camera();
   for (const double turn : {4.0, 95.0, 200.0}) {
     const Eigen::Isometry3d pose = board_pose(0.45, 15, -20, turn);
     PictureOptions options;
     options.falloff = 0.3;
-    const auto image = noisy_picture(camera, board_electrons(camera, pose, checkerboard_pattern(checkerboard()), options), options, 3);
+    const auto image =
+        noisy_picture(camera, board_electrons(camera, pose, checkerboard_pattern(checkerboard()), options), options, 3);
     const BoardSighting sighting = detect_board(image, checkerboard(), "one");
     ASSERT_EQ(sighting.points(), 40u) << turn;
     const Errors plain = errors_of(sighting, camera, pose, false), turned = errors_of(sighting, camera, pose, true);
@@ -71,8 +74,8 @@ TEST(BoardDetection, aTagGridMayBeSeenInPart) {
   EXPECT_GE(sighting.landmarks.size(), 5u);
   EXPECT_LT(sighting.landmarks.size(), 12u);
   const Errors unaware = errors_of(bent, camera, pose, false), errors = errors_of(sighting, camera, pose, false);
-  std::printf("tag grid: %zu tags, RMS %.4f stated %.4f; lens not known: RMS %.4f\n", sighting.landmarks.size(), errors.rms,
-              errors.stated, unaware.rms);
+  std::printf("tag grid: %zu tags, RMS %.4f stated %.4f; lens not known: RMS %.4f\n", sighting.landmarks.size(),
+              errors.rms, errors.stated, unaware.rms);
   EXPECT_LT(unaware.rms, 0.03);  // bent edges taken for straight ones
   EXPECT_LT(errors.rms, 0.5 * unaware.rms);
   EXPECT_GT(errors.rms / errors.stated, 0.7);

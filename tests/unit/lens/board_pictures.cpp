@@ -64,7 +64,8 @@ Pattern tag_grid_pattern(const BoardDescription& board) {
   for (int i = 0; i < board.columns * board.rows; ++i) {
     image_u8_t* image = apriltag_to_image(family, board.first_tag_id + i);
     std::vector<std::uint8_t> bits;
-    for (int y = 0; y < 10; ++y) bits.insert(bits.end(), image->buf + y * image->stride, image->buf + y * image->stride + 10);
+    for (int y = 0; y < 10; ++y)
+      bits.insert(bits.end(), image->buf + y * image->stride, image->buf + y * image->stride + 10);
     bitmaps.push_back(std::move(bits));
     std::free(image->buf);  // what image_u8_destroy does; Debian's library does not export it
     std::free(image);
@@ -78,7 +79,8 @@ Pattern tag_grid_pattern(const BoardDescription& board) {
     const double v = 5.0 - (r - std::floor(r) - 0.5) * board.pitch_m / cell;  // downwards
     if (u < 0 || v < 0 || u >= 10 || v >= 10) return kWhite;
     const auto tag = static_cast<std::size_t>(static_cast<int>(r) * board.columns + static_cast<int>(c));
-    return bitmaps[tag][static_cast<std::size_t>(static_cast<int>(v) * 10 + static_cast<int>(u))] > 127 ? kWhite : kBlack;
+    return bitmaps[tag][static_cast<std::size_t>(static_cast<int>(v) * 10 + static_cast<int>(u))] > 127 ? kWhite
+                                                                                                        : kBlack;
   };
 }
 
@@ -86,7 +88,9 @@ std::vector<float> board_electrons(const CameraModel& camera, const Eigen::Isome
                                    const PictureOptions& options) {
   const PlaneView plane(pose);
   const int w = camera.width_px, h = camera.height_px;
-  const auto index = [w](int x, int y) { return static_cast<std::size_t>(y) * static_cast<std::size_t>(w) + static_cast<std::size_t>(x); };
+  const auto index = [w](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(w) + static_cast<std::size_t>(x);
+  };
   std::vector<Eigen::Vector2d> place(static_cast<std::size_t>(w) * static_cast<std::size_t>(h));
   std::vector<double> centre(place.size());
   for (int y = 0; y < h; ++y) {
@@ -96,8 +100,8 @@ std::vector<float> board_electrons(const CameraModel& camera, const Eigen::Isome
     }
   }
   const int reach = static_cast<int>(std::ceil(3.5 * options.blur_px + 0.5));
-  // Every pixel takes another stretch of one low-discrepancy sequence: with the same points everywhere, an edge's steps line up
-  // and its place is wrong by 0.005 px.
+  // Every pixel takes another stretch of one low-discrepancy sequence: with the same points everywhere, an edge's steps
+  // line up and its place is wrong by 0.005 px.
   constexpr std::size_t kPoints = 800, kAll = 20'000;
   const auto points = spread_points(options.blur_px, kAll);
   std::mt19937_64 random(1);
@@ -129,8 +133,8 @@ std::vector<float> board_electrons(const CameraModel& camera, const Eigen::Isome
   return electrons;
 }
 
-MosaicRadiance noisy_picture(const CameraModel& camera, const std::vector<float>& electrons, const PictureOptions& options,
-                             std::uint64_t seed) {
+MosaicRadiance noisy_picture(const CameraModel& camera, const std::vector<float>& electrons,
+                             const PictureOptions& options, std::uint64_t seed) {
   MosaicRadiance image{camera.width_px, camera.height_px, options.mosaic, electrons, electrons, {}};
   image.flags.assign(electrons.size(), 0);
   std::mt19937_64 random(seed);
@@ -163,7 +167,8 @@ BoardSighting noisy_sighting(const CameraModel& camera, const BoardDescription& 
   BoardSighting sighting{name, {}};
   for (int r = 0; r < board.rows; ++r) {
     for (int c = 0; c < board.columns; ++c) {
-      const Eigen::Vector3d x((c - 0.5 * (board.columns - 1)) * board.pitch_m, (r - 0.5 * (board.rows - 1)) * board.pitch_m, 0);
+      const Eigen::Vector3d x((c - 0.5 * (board.columns - 1)) * board.pitch_m,
+                              (r - 0.5 * (board.rows - 1)) * board.pitch_m, 0);
       Eigen::Vector2d pixel = camera.project(pose * x);
       if (!camera.contains(pixel)) continue;
       pixel.x() += sigma_px * normal(random);

@@ -29,8 +29,8 @@ inline CameraModel sensor_camera(double focal_mm) {
 }
 
 // The board is about 0.6 picture widths wide and moves over the picture; tilts up to `tilt_deg` about both axes.
-inline std::vector<BoardSighting> placements(const CameraModel& camera, const BoardDescription& board, int count, double sigma_px,
-                                             std::uint64_t seed, double tilt_deg = 35.0) {
+inline std::vector<BoardSighting> placements(const CameraModel& camera, const BoardDescription& board, int count,
+                                             double sigma_px, std::uint64_t seed, double tilt_deg = 35.0) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> spread(-1.0, 1.0);
   const double width_m = board.pitch_m * (board.columns - 1);
@@ -39,7 +39,8 @@ inline std::vector<BoardSighting> placements(const CameraModel& camera, const Bo
     const double distance = camera.focal_x_px * width_m / (0.6 * camera.width_px) * (1.0 + 0.2 * spread(random));
     const double view_m = distance * camera.width_px / camera.focal_x_px;
     const double x = spread(random), y = spread(random), turn = 10 * spread(random) + 90.0 * (i % 4);
-    const double right = 0.2 * view_m * ((i & 1) ? 1 : -1) * (0.5 + 0.5 * x * x), down = 0.12 * view_m * ((i & 2) ? 1 : -1) * (0.5 + 0.5 * y * y);
+    const double right = 0.2 * view_m * ((i & 1) ? 1 : -1) * (0.5 + 0.5 * x * x),
+                 down = 0.12 * view_m * ((i & 2) ? 1 : -1) * (0.5 + 0.5 * y * y);
     const Eigen::Isometry3d pose = board_pose(distance, tilt_deg * x, tilt_deg * y, turn, right, down);
     sightings.push_back(noisy_sighting(camera, board, pose, sigma_px, seed * 1000 + static_cast<std::uint64_t>(i),
                                        "placement " + std::to_string(i)));

@@ -35,8 +35,8 @@ LensMatrix calibrated_covariance(const CameraModel& camera) {
   return calibrate_lens(6000, 4000, placements(camera, wide_board(), 12, kSigma_px, 999)).covariance;
 }
 
-// Calibrated with 12 placements, checked with `boards` others through a lens that is `changed` in the meantime: it is told the
-// check of the unchanged lens, from the same placements.
+// Calibrated with 12 placements, checked with `boards` others through a lens that is `changed` in the meantime: it is
+// told the check of the unchanged lens, from the same placements.
 using Change = std::function<CameraModel(CameraModel, const LensCheck&)>;
 Rates verdicts(const CameraModel& then, const Change& changed, int boards, int seeds) {
   const LensMatrix covariance = calibrated_covariance(then);
@@ -44,10 +44,14 @@ Rates verdicts(const CameraModel& then, const Change& changed, int boards, int s
   for (int seed = 1; seed <= seeds; ++seed) {
     const auto s = static_cast<std::uint64_t>(seed);
     const CameraModel calibrated = drawn(then, covariance, s);
-    const auto shots = [&](const CameraModel& now) { return placements(now, wide_board(), boards, kSigma_px, s + 5000); };
+    const auto shots = [&](const CameraModel& now) {
+      return placements(now, wide_board(), boards, kSigma_px, s + 5000);
+    };
     const CameraModel now = changed(then, check_lens(calibrated, covariance, shots(then)));
     const LensCheck check = check_lens(calibrated, covariance, shots(now));
-    (check.verdict == LensVerdict::Holds ? rates.holds : check.verdict == LensVerdict::Changed ? rates.changed : rates.unclear)++;
+    (check.verdict == LensVerdict::Holds     ? rates.holds
+     : check.verdict == LensVerdict::Changed ? rates.changed
+                                             : rates.unclear)++;
   }
   return rates;
 }
@@ -69,20 +73,21 @@ CameraModel lens(double focal_mm = 50.0) {
 }
 
 TEST(CheckLens, anUnchangedLensHolds) {
-  const Rates rates = verdicts(lens(), [](CameraModel camera, const LensCheck&) { return camera; }, 3, 100);
+  const Rates rates = verdicts(
+      lens(), [](CameraModel camera, const LensCheck&) { return camera; }, 3, 100);
   std::printf("unchanged: holds %d, changed %d, unclear %d of 100\n", rates.holds, rates.changed, rates.unclear);
   EXPECT_GE(rates.holds, 95);
 }
 
-// Three placements. At 50 mm a principal point off by a pixel (0.08 mrad) looks so much like boards turned a little that it
-// is not noticed; the check says so itself (next test). At 24 mm it is.
+// Three placements. At 50 mm a principal point off by a pixel (0.08 mrad) looks so much like boards turned a little
+// that it is not noticed; the check says so itself (next test). At 24 mm it is.
 TEST(CheckLens, noticesATenthOfAPercentOfFocalLengthAndAPixelOfPrincipalPoint) {
-  const Rates focal = verdicts(lens(), longer, 3, 50), wide = verdicts(lens(24.0), shifted, 3, 50);
-  const Rates narrow = verdicts(lens(), shifted, 3, 50);
-  std::printf("focal + 0.1 %%: changed %d of 50; principal + 1 px: %d of 50 at 24 mm, %d of 50 at 50 mm\n", focal.changed,
-              wide.changed, narrow.changed);
-  EXPECT_GE(focal.changed, 47);
-  EXPECT_GE(wide.changed, 47);
+  const Rates focal = verdicts(lens(), longer, 3, 30), wide = verdicts(lens(24.0), shifted, 3, 30);
+  const Rates narrow = verdicts(lens(), shifted, 3, 20);
+  std::printf("focal + 0.1 %%: changed %d of 30; principal + 1 px: %d of 30 at 24 mm, %d of 20 at 50 mm\n",
+              focal.changed, wide.changed, narrow.changed);
+  EXPECT_GE(focal.changed, 28);
+  EXPECT_GE(wide.changed, 28);
 }
 
 // Noticed 19 times in 20 by its own statement: fewer than 43 of 50 would happen once in some 1000 such tests.

@@ -18,8 +18,8 @@ CameraModel distorted() {
   return camera;
 }
 
-// One chi square over all parameters and seeds: mean 8 for 8 parameters, its own scatter sqrt(16 / seeds). And each parameter's
-// scatter over its stated sigma: known to 1 / sqrt(2 * seeds), so 3.3 of that.
+// One chi square over all parameters and seeds: mean 8 for 8 parameters, its own scatter sqrt(16 / seeds). And each
+// parameter's scatter over its stated sigma: known to 1 / sqrt(2 * seeds), so 3.3 of that.
 TEST(LensCalibration, covarianceIsTheScatter) {
   const CameraModel truth = distorted();
   constexpr int kSeeds = 40;
@@ -30,7 +30,8 @@ TEST(LensCalibration, covarianceIsTheScatter) {
     // All terms are large here against their sigma, so that the choice of terms does not bias the scatter.
     CameraModel strong = truth;
     strong.k2 = 4.0, strong.p1 = 0.004, strong.p2 = -0.003;
-    const auto result = calibrate_lens(1024, 768, placements(strong, sparse_board(), 12, kSigma_px, static_cast<std::uint64_t>(seed)));
+    const auto result =
+        calibrate_lens(1024, 768, placements(strong, sparse_board(), 12, kSigma_px, static_cast<std::uint64_t>(seed)));
     ASSERT_TRUE(result.usable()) << result.refusal;
     for (const bool free : result.terms) EXPECT_TRUE(free);
     const LensVector miss = lens_vector(result.camera) - lens_vector(strong);
@@ -66,7 +67,7 @@ TEST(LensCalibration, rejectsBentMisreadAndEmptyBoardsAndKeepsTheRest) {
   for (Landmark& l : sightings[3].landmarks)  // bent: as if it bulged towards the camera
     l.pixels[0] += 40.0 * l.x_in_board[0].x() * l.x_in_board[0].x() * Eigen::Vector2d(30, 20);
   std::swap(sightings[6].landmarks[0].x_in_board, sightings[6].landmarks[40].x_in_board);  // misread
-  for (Landmark& l : sightings[8].landmarks) l.x_in_board[0].x() *= 1.02;                  // printed with another scale along x
+  for (Landmark& l : sightings[8].landmarks) l.x_in_board[0].x() *= 1.02;  // printed with another scale along x
   sightings[10].landmarks.resize(3);
   const auto result = calibrate_lens(1024, 768, sightings);
   ASSERT_TRUE(result.usable()) << result.refusal;
@@ -115,9 +116,9 @@ TEST(LensCalibration, focalLengthsFrom15To300mm) {
     ASSERT_TRUE(result.usable()) << focal_mm << " mm: " << result.refusal;
     const LensVector miss = lens_vector(result.camera) - lens_vector(truth);
     const LensVector sigma = result.covariance.diagonal().cwiseSqrt();
-    std::printf("%3.0f mm: focal %+.4f %% (stated %.4f), principal %+.2f %+.2f px (stated %.2f %.2f), RMS %.4f px\n", focal_mm,
-                100 * miss[0] / truth.focal_x_px, 100 * sigma[0] / truth.focal_x_px, miss[2], miss[3], sigma[2], sigma[3],
-                result.rms_px);
+    std::printf("%3.0f mm: focal %+.4f %% (stated %.4f), principal %+.2f %+.2f px (stated %.2f %.2f), RMS %.4f px\n",
+                focal_mm, 100 * miss[0] / truth.focal_x_px, 100 * sigma[0] / truth.focal_x_px, miss[2], miss[3],
+                sigma[2], sigma[3], result.rms_px);
     for (int i = 0; i < 4; ++i) EXPECT_LT(std::abs(miss[i]), 4.0 * sigma[i]) << focal_mm << " mm, " << i;
     EXPECT_LT(sigma[0] / truth.focal_x_px, 0.002);
     EXPECT_NEAR(result.reduced_chi2, 1.0, 0.15);
@@ -135,7 +136,8 @@ TEST(LensCalibration, differsFromOpenCvByHalfAPixel) {
     auto& p = pixels.emplace_back();
     for (const Landmark& l : sighting.landmarks) {
       b.emplace_back(static_cast<float>(l.x_in_board[0].x()), static_cast<float>(l.x_in_board[0].y()), 0.0f);
-      p.emplace_back(static_cast<float>(l.pixels[0].x() - 0.5), static_cast<float>(l.pixels[0].y() - 0.5));  // to OpenCV's
+      p.emplace_back(static_cast<float>(l.pixels[0].x() - 0.5),
+                     static_cast<float>(l.pixels[0].y() - 0.5));  // to OpenCV's
     }
   }
   cv::Mat matrix, distortion;

@@ -51,7 +51,10 @@ TEST(LensFile, aChangedNumberIsFound) {
   const auto path = file_path("lens_changed.json");
   write_lens_file(path, record());
   std::string text;
-  { std::ifstream in(path); text.assign(std::istreambuf_iterator<char>(in), {}); }
+  {
+    std::ifstream in(path);
+    text.assign(std::istreambuf_iterator<char>(in), {});
+  }
   const auto at = text.find("\"made_utc_s\": 1790000000");
   ASSERT_NE(at, std::string::npos);
   text[at + 15] = '2';

@@ -21,7 +21,11 @@ struct FlatOptions {
 MosaicRadiance flat(const FlatOptions& options, std::uint64_t seed) {
   const CameraModel c = camera();
   Vignetting v{c.principal_x_px, c.principal_y_px, 200.0, options.terms, Eigen::Matrix3d::Zero()};
-  MosaicRadiance image{320, 240, options.mosaic, std::vector<float>(320 * 240), std::vector<float>(320 * 240),
+  MosaicRadiance image{320,
+                       240,
+                       options.mosaic,
+                       std::vector<float>(320 * 240),
+                       std::vector<float>(320 * 240),
                        std::vector<std::uint8_t>(320 * 240)};
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
@@ -39,7 +43,8 @@ MosaicRadiance flat(const FlatOptions& options, std::uint64_t seed) {
   return image;
 }
 
-// The transmission in the corner, where it is least, with dust and tilted light: scatter over stated sigma, known to 1 / sqrt(80).
+// The transmission in the corner, where it is least, with dust and tilted light: scatter over stated sigma, known to 1
+// / sqrt(80).
 TEST(Vignetting, cornerIsRightWithinItsSigmaDespiteDustAndTiltedLight) {
   constexpr int kSeeds = 40;
   const Vignetting truth{168.0, 115.0, 200.0, FlatOptions{}.terms, Eigen::Matrix3d::Zero()};
@@ -76,7 +81,8 @@ TEST(Vignetting, correctionMakesAFlatFlatAndScalesItsVariance) {
   EXPECT_NEAR(image.variance[0] / before, 1.0 / (t * t), 1e-5);
   double corner = 0, middle = 0;
   for (int y = 0; y < 20; ++y) {
-    for (int x = 0; x < 20; ++x) corner += image.value[image.index(x, y)], middle += image.value[image.index(160 + x, 110 + y)];
+    for (int x = 0; x < 20; ++x)
+      corner += image.value[image.index(x, y)], middle += image.value[image.index(160 + x, 110 + y)];
   }
   EXPECT_NEAR(corner / middle, 1.0, 5 * std::sqrt(2.0 / (400 * 6000.0)));  // five sigma of the two means
 }
