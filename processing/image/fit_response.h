@@ -2,7 +2,7 @@
 //
 // sample = black + F(E) + noise with E = rate * exposure; its inverse L is what is looked for. OpenCV has Debevec and
 // Malik's (1997) and Robertson's (1999) methods for 8 bits, with a table entry for every code and no noise model;
-// tests/bench/response_table says how far they come. Here: maximum likelihood in the samples, every pixel's rate
+// How far those two come is not measured yet. Here: maximum likelihood in the samples, every pixel's rate
 // eliminated, with the sensor's noise (shot noise goes with E, read noise and rounding with the code). The curve is
 //     L(u) = integral from 0 to u of exp(q),   u = (code - black) / (clip - black),
 // so that it cannot fall; q is a cubic spline. Its constant is the scale, which exposures cannot tell: L = u at u = 1/2.
