@@ -59,7 +59,8 @@ class LitBoard {
 
   // Mean over a pixel whose corners see these places: upper left, upper right, lower left, lower right.
   double mean_albedo(const std::array<Eigen::Vector2d, 4>& corner) const {
-    constexpr int kSide = 8;
+    constexpr int kSamples = 144, kStride = 89;  // a Fibonacci lattice: no two samples in one row or column, so that
+                                                 // edges along the rows are as fine as any
     const auto at = [&](double u, double v) {
       return pattern_.albedo_at((1.0 - v) * ((1.0 - u) * corner[0] + u * corner[1]) +
                                 v * ((1.0 - u) * corner[2] + u * corner[3]));
@@ -67,8 +68,10 @@ class LitBoard {
     const double middle = at(0.5, 0.5);
     if (at(0, 0) == middle && at(1, 0) == middle && at(0, 1) == middle && at(1, 1) == middle) return middle;
     double sum = 0.0;
-    for (int i = 0; i < kSide * kSide; ++i) sum += at((i % kSide + 0.5) / kSide, (i / kSide + 0.5) / kSide);
-    return sum / (kSide * kSide);
+    for (int i = 0; i < kSamples; ++i) {
+      sum += at((i + 0.5) / kSamples, (i * kStride % kSamples + 0.5) / kSamples);
+    }
+    return sum / kSamples;
   }
 
  private:

@@ -11,7 +11,7 @@
 namespace lumitexel {
 
 // corner_directions: through the pixels' corners, z = 1, row by row, (width + 1) * (height + 1). A pixel is the mean of the
-// printed albedo over its area (64 samples where black and white meet in it) times the irradiance at its middle.
+// printed albedo over its area (144 samples where black and white meet in it) times the irradiance at its middle.
 Image board_picture(const SimulatedWorld& world, const WorldState& state,
                     const std::vector<Eigen::Vector3d>& corner_directions);
 

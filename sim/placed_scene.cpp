@@ -109,7 +109,7 @@ SceneHit PlacedScene::closest(const Eigen::Vector3d& origin, const Eigen::Vector
 }
 
 double PlacedScene::tag_albedo(const SceneHit& hit, const Eigen::Vector3d& across, const Eigen::Vector3d& down) const {
-  constexpr int kSide = 4;
+  constexpr int kSamples = 34, kStride = 21;  // a Fibonacci lattice: fine along rows and columns alike
   const Square& square = tags_[hit.tag];
   const double size_m = world_.rig.tags[hit.tag].size_m;
   const auto in_sizes = [&](const Eigen::Vector3d& x) -> Eigen::Vector2d {
@@ -117,11 +117,11 @@ double PlacedScene::tag_albedo(const SceneHit& hit, const Eigen::Vector3d& acros
   };
   const Eigen::Vector2d middle = in_sizes(hit.point - square.centre), right = in_sizes(across), below = in_sizes(down);
   int white = 0;
-  for (int i = 0; i < kSide * kSide; ++i) {
-    const double u = (i % kSide + 0.5) / kSide - 0.5, v = (i / kSide + 0.5) / kSide - 0.5;
+  for (int i = 0; i < kSamples; ++i) {
+    const double u = (i + 0.5) / kSamples - 0.5, v = (i * kStride % kSamples + 0.5) / kSamples - 0.5;
     white += world_.tag_patterns[hit.tag].white_at(middle + u * right + v * below) ? 1 : 0;
   }
-  return kPrintedBlack + (kTagWhite - kPrintedBlack) * white / (kSide * kSide);
+  return kPrintedBlack + (kTagWhite - kPrintedBlack) * white / kSamples;
 }
 
 bool PlacedScene::shadowed(const SceneHit& hit, const Eigen::Vector3d& light) const {
