@@ -44,7 +44,7 @@ class SessionCalibration {
         reader_(measure_sensor(frames_, in, records_, options, summary_, progress)),
         lens_(measure_lens(frames_, in, reader_, options, directory_, summary_, progress)) {
     if (lens_.vignetting) reader_.take_out(*lens_.vignetting);
-    tags_ = detect_session_tags(reader_, records_, in.rig.tags, progress);
+    tags_ = detect_session_tags(reader_, records_, in.rig.tags, lens_.camera, progress);
     poses_ = measure_poses(in, records_, reader_, lens_, tags_, options, summary_, progress);
   }
 

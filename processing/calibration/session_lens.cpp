@@ -35,7 +35,7 @@ void describe(const LensCalibration& calibration, LensSummary& lens) {
     if (!board.rejected.empty()) lens.notes.push_back(board.name + ": " + board.rejected);
   }
   if (!calibration.usable()) {
-    lens.notes.push_back("boards: " + calibration.refusal);
+    lens.notes.emplace_back("boards: " + calibration.refusal);
     return;
   }
   lens.source = "boards of this session";
@@ -75,8 +75,14 @@ void measure_vignetting(const CapturedFrames& frames, const RadianceReader& read
     progress.update(static_cast<std::int64_t>(flats.size()));
   }
   const VignettingFit fit = fit_vignetting(flats, lens.camera);
-  if (!fit.usable) return summary.lens.notes.push_back("flat fields: too little of them is usable");
-  if (fit.terms == 0) return summary.lens.notes.push_back("flat fields: they ask for no vignetting");
+  if (!fit.usable) {
+    summary.lens.notes.emplace_back("flat fields: too little of them is usable");
+    return;
+  }
+  if (fit.terms == 0) {
+    summary.lens.notes.emplace_back("flat fields: they ask for no vignetting");
+    return;
+  }
   lens.vignetting = fit.vignetting;
   summary.lens.corner_transmission = fit.vignetting.transmission({0.0, 0.0});
   summary.lens.corner_transmission_sigma = fit.vignetting.sigma({0.0, 0.0});

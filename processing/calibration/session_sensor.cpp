@@ -64,7 +64,7 @@ RadianceReader measure_sensor(const CapturedFrames& frames, const CapturedInputs
   if (options.takes(CalibrationStep::Response)) {
     ResponseFit response = fit_response(brackets, model.sensor);
     model.response = std::move(response.curve);
-    if (model.response) summary.sensor.notes.push_back("the sensor is not linear: a response curve is undone");
+    if (model.response) summary.sensor.notes.emplace_back("the sensor is not linear: a response curve is undone");
   }
   if (options.takes(CalibrationStep::PhotonTransfer) && !model.response) {
     const PhotonTransfer transfer = measure_photon_transfer(brackets, darks, model.sensor);

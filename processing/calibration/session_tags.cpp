@@ -22,13 +22,14 @@ std::vector<DetectedTag> described_once(const std::vector<DetectedTag>& seen, co
 
 std::vector<std::vector<DetectedTag>> detect_session_tags(const RadianceReader& reader,
                                                           const std::vector<ViewFrames>& views,
-                                                          const std::vector<TagDescription>& tags, Progress& progress) {
+                                                          const std::vector<TagDescription>& tags,
+                                                          const CameraModel& camera, Progress& progress) {
   std::vector<std::vector<DetectedTag>> seen(views.size());
   if (tags.empty()) return seen;
   progress.begin("tags", static_cast<std::int64_t>(views.size()), "views");
   std::atomic<std::int64_t> done{0};
   tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
-    seen[v] = described_once(detect_tags(reader.read(views[v].spheres.ring)), tags);
+    seen[v] = described_once(detect_tags(reader.read(views[v].spheres.ring), camera), tags);
     progress.update(++done);
   });
   return seen;

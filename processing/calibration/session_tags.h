@@ -14,6 +14,7 @@ namespace lumitexel {
 // that nothing lies in shadow. Only tags that the rig's description names; none of them where an id is seen twice.
 std::vector<std::vector<DetectedTag>> detect_session_tags(const RadianceReader& reader,
                                                           const std::vector<ViewFrames>& views,
-                                                          const std::vector<TagDescription>& tags, Progress& progress);
+                                                          const std::vector<TagDescription>& tags,
+                                                          const CameraModel& camera, Progress& progress);
 
 }  // namespace lumitexel
