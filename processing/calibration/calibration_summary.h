@@ -37,7 +37,8 @@ struct SensorSummary {
 struct LensSummary {
   std::string source = "rig description";  // else "boards of this session"
   std::optional<double> reprojection_px;   // rms
-  std::vector<double> sigma{};             // focal x, y, principal x, y, k1, k2, p1, p2 (px, 1); empty if unknown
+  std::vector<double> params{};            // focal x, y, principal x, y (px), k1, k2, p1, p2; empty for imports
+  std::vector<double> sigma{};             // of each; empty if unknown
   int boards = 0;                          // used
   std::vector<std::string> notes{};        // boards rejected and why, parts of the picture without boards, refusals
   std::optional<double> corner_transmission, corner_transmission_sigma;  // against the principal point

@@ -44,6 +44,11 @@ std::vector<FrameRecord> CapturedFrames::of(ShotKind kind, const std::string& vi
   return records;
 }
 
+std::int64_t CapturedFrames::begun_utc_ns() const {
+  const auto earlier = [](const Taken& a, const Taken& b) { return a.record.utc_ns < b.record.utc_ns; };
+  return std::min_element(taken_.begin(), taken_.end(), earlier)->record.utc_ns;
+}
+
 bool CapturedFrames::has(ShotKind kind) const {
   return std::any_of(taken_.begin(), taken_.end(), [&](const Taken& taken) { return taken.shot.kind == kind; });
 }

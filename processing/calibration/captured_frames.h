@@ -19,6 +19,7 @@ class CapturedFrames {
   // The frames of a kind (and view; "" for gray card and darks), in the order of their indices. Throws BadInput if
   // there are none.
   std::vector<FrameRecord> of(ShotKind kind, const std::string& view = "") const;
+  std::int64_t begun_utc_ns() const;  // when the first frame arrived
   bool has(ShotKind kind) const;
   // The shots' indices (Shot::index), in the order of of(kind).
   std::vector<int> indices_of(ShotKind kind) const;

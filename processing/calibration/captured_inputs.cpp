@@ -10,7 +10,10 @@ CapturedInputs read_captured_inputs(const SessionStore& session) {
   const std::string where = session.directory().string() + ": ";
   in.rig = parse_rig(session.document("rig.toml"), where + "rig.toml");
   in.plan = parse_plan(session.document("plan.toml"), where + "plan.toml");
-  in.mesh = parse_mesh(session.document("mesh.ply"), ".ply", where + "mesh.ply");
+  if (!in.plan.views.empty()) in.mesh = parse_mesh(session.document("mesh.ply"), ".ply", where + "mesh.ply");
+  if (session.has_document("lens.json")) {
+    in.lens = parse_lens_record(session.document("lens.json"), where + "lens.json");
+  }
   in.nominal_camera = camera_model_of(in.rig.camera);
   in.nominal_sensor = linear_sensor(in.rig.camera, in.plan.gain_db);
   return in;

@@ -1,10 +1,12 @@
 // What a captured session says of itself before anything is measured: its documents, and which frame is for what.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "processing/calibration/captured_frames.h"
 #include "processing/calibration/lens/camera_model.h"
+#include "processing/calibration/lens/lens_file.h"
 #include "processing/image/linear_sensor.h"
 #include "processing/surface/mesh.h"
 #include "rig/capture_plan.h"
@@ -15,8 +17,9 @@ namespace lumitexel {
 struct CapturedInputs {
   RigDescription rig;
   CapturePlan plan;
-  Mesh mesh;
-  CameraModel nominal_camera;    // as the rig's description promises
+  Mesh mesh;  // empty where the plan has no views
+  std::optional<LensRecord> lens;  // calibrated before, as the capture was given it
+  CameraModel nominal_camera;      // as the rig's description promises
   LinearSensor nominal_sensor;
 };
 

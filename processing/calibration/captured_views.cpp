@@ -44,11 +44,14 @@ class SessionCalibration {
         reader_(measure_sensor(frames_, in, records_, options, summary_, progress)),
         lens_(measure_lens(frames_, in, reader_, options, directory_, summary_, progress)) {
     if (lens_.vignetting) reader_.take_out(*lens_.vignetting);
+    if (records_.empty()) return;
     tags_ = detect_session_tags(reader_, records_, in.rig.tags, lens_.camera, progress);
     poses_ = measure_poses(in, records_, reader_, lens_, tags_, options, summary_, progress);
   }
 
   std::pair<CalibratedSession, CalibrationSummary> run() {
+    calibrated_.channels = mosaic_channels(in_.rig.camera.limits.mosaic);
+    if (records_.empty()) return {std::move(calibrated_), std::move(summary_)};  // a session for the lens alone
     const SessionLights lights = measure_lights_of_views();
     const LampPattern pattern = measure_lamp_pattern(frames_, in_, reader_, lens_, lights, options_, summary_);
     const SessionCard card(in_, lens_.camera, tags_, options_);
@@ -57,7 +60,6 @@ class SessionCalibration {
     make_views(lights);
     const std::vector<TimedReading> readings = make_photographs(card, lights);
     give_intensity(measure_lamp(in_, lights, pattern, readings, card_bracket, options_, summary_));
-    calibrated_.channels = mosaic_channels(in_.rig.camera.limits.mosaic);
     return {std::move(calibrated_), std::move(summary_)};
   }
 

@@ -2,7 +2,11 @@
 
 #include <tbb/parallel_for.h>
 
+#include <atomic>
+#include <cmath>
+
 #include "processing/calibration/lens/board_detection.h"
+#include "processing/calibration/lens/check_lens.h"
 #include "processing/calibration/lens/lens_pictures.h"
 #include "processing/image/raster_file.h"
 
@@ -44,19 +48,54 @@ void describe(const LensCalibration& calibration, LensSummary& lens) {
   for (const BoardFit& board : calibration.boards) lens.boards += board.rejected.empty();
 }
 
-void measure_boards(const CapturedFrames& frames, const CapturedInputs& in, const RadianceReader& reader,
-                    const std::filesystem::path& directory, SessionLens& lens, CalibrationSummary& summary,
-                    Progress& progress) {
-  const std::vector<FrameRecord> shots = frames.of(ShotKind::Board);
-  const std::vector<int> placements = frames.indices_of(ShotKind::Board);
-  const std::vector<BoardSighting> sightings = see_boards(shots, placements, *in.rig.board, reader, progress);
+// What a lens calibrated before is worth today; empty if it may be used.
+std::string objection_to(const LensRecord& record, const CapturedInputs& in, std::int64_t taken_utc_s,
+                         const std::optional<LensCheck>& check) {
+  const std::string mismatch = lens_mismatch(record, "", in.rig.camera.limits);
+  if (!mismatch.empty()) return mismatch;
+  if (check && check->verdict == LensVerdict::Changed) return "the check shots say that it has changed: " + check->reason;
+  const bool confirmed = check && check->verdict == LensVerdict::Holds;
+  if (!confirmed && lens_expired(record, taken_utc_s)) {
+    return "it had expired, and no check shot says that it still holds: photograph the board in three placements or more";
+  }
+  return {};
+}
+
+void take_record(const LensRecord& record, const CapturedInputs& in, std::int64_t taken_utc_s,
+                 const std::vector<BoardSighting>& sightings, SessionLens& lens, LensSummary& summary) {
+  std::optional<LensCheck> check;
+  if (!sightings.empty()) {
+    check = check_lens(record.camera, record.covariance, sightings);
+    summary.notes.push_back(std::string("check of the lens calibration: ") + to_string(check->verdict) + "; " + check->reason);
+  }
+  const std::string objection = objection_to(record, in, taken_utc_s, check);
+  if (!objection.empty()) {
+    summary.notes.push_back("the lens calibration is not used: " + objection);
+    return;
+  }
+  lens.camera = record.camera;
+  lens.covariance = record.covariance;
+  lens.vignetting = record.vignetting;
+  summary.source = "lens calibration " + lens_fingerprint(record).substr(0, 12);
+  summary.reprojection_px = record.rms_px;
+  summary.boards = record.boards_used;
+  for (int i = 0; i < kLensParameters; ++i) summary.sigma.push_back(std::sqrt(record.covariance(i, i)));
+}
+
+// Fewer boards than this check a lens, they do not calibrate one, where one calibrated before is at hand.
+constexpr std::size_t kEnoughToCalibrate = 5;
+
+void measure_boards(const std::vector<int>& placements, const std::vector<BoardSighting>& sightings,
+                    const CapturedInputs& in, const std::filesystem::path& directory, SessionLens& lens,
+                    CalibrationSummary& summary) {
   const LensCalibration calibration =
       calibrate_lens(in.nominal_camera.width_px, in.nominal_camera.height_px, sightings);
   describe(calibration, summary.lens);
   if (!calibration.usable()) return;
   lens.camera = calibration.camera;
   lens.covariance = calibration.covariance;
-  for (std::size_t i = 0; i < shots.size(); ++i) {
+  lens.record = lens_record(calibration);
+  for (std::size_t i = 0; i < placements.size(); ++i) {
     if (calibration.boards[i].rejected.empty()) {
       lens.camera_from_board[placements[i]] = calibration.boards[i].camera_from_board;
     }
@@ -89,18 +128,41 @@ void measure_vignetting(const CapturedFrames& frames, const RadianceReader& read
   keep_picture(directory, "vignetting.png", vignetting_picture(fit.vignetting, lens.camera, kPictureWidth_px), summary);
 }
 
+// The lens as a file that later sessions can be given.
+void keep_record(const CapturedFrames& frames, const CapturedInputs& in, const std::filesystem::path& directory,
+                 SessionLens& lens) {
+  if (!lens.record) return;
+  lens.record->mosaic = in.rig.camera.limits.mosaic;
+  lens.record->made_utc_s = frames.begun_utc_ns() / 1'000'000'000;
+  lens.record->vignetting = lens.vignetting;
+  write_lens_file(directory / "lens.json", *lens.record);
+}
+
 }  // namespace
 
 SessionLens measure_lens(const CapturedFrames& frames, const CapturedInputs& in, const RadianceReader& reader,
                          const CalibrationOptions& options, const std::filesystem::path& directory,
                          CalibrationSummary& summary, Progress& progress) {
-  SessionLens lens{in.nominal_camera, std::nullopt, std::nullopt, {}};
-  if (in.rig.board && frames.has(ShotKind::Board) && options.takes(CalibrationStep::Lens)) {
-    measure_boards(frames, in, reader, directory, lens, summary, progress);
+  SessionLens lens{in.nominal_camera, std::nullopt, std::nullopt, {}, std::nullopt};
+  if (options.takes(CalibrationStep::Lens)) {
+    std::vector<BoardSighting> sightings;
+    std::vector<int> placements;
+    if (in.rig.board && frames.has(ShotKind::Board)) {
+      placements = frames.indices_of(ShotKind::Board);
+      sightings = see_boards(frames.of(ShotKind::Board), placements, *in.rig.board, reader, progress);
+    }
+    if (in.lens) take_record(*in.lens, in, frames.begun_utc_ns() / 1'000'000'000, sightings, lens, summary.lens);
+    if (sightings.size() >= kEnoughToCalibrate || (!in.lens && !sightings.empty())) {
+      measure_boards(placements, sightings, in, directory, lens, summary);
+    }
   }
   if (frames.has(ShotKind::FlatField) && options.takes(CalibrationStep::Vignetting)) {
     measure_vignetting(frames, reader, directory, lens, summary, progress);
   }
+  if (!options.takes(CalibrationStep::Vignetting)) lens.vignetting.reset();
+  const LensVector params = lens_vector(lens.camera);
+  summary.lens.params.assign(params.begin(), params.end());
+  keep_record(frames, in, directory, lens);
   return lens;
 }
 

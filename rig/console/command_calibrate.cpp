@@ -1,22 +1,31 @@
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
-#include <map>
 #include <memory>
-#include <optional>
 #include <sstream>
 
 #include "drivers/error.h"
 #include "processing/calibration/calibrated_session.h"
 #include "processing/calibration/calibration_summary.h"
+#include "processing/calibration/calibration_summary_json.h"
+#include "processing/report/calibration_report.h"
+#include "rig/console/calibration_truth.h"
 #include "rig/console/command.h"
 
 namespace lumitexel {
 namespace {
 
 using nlohmann::json;
+namespace fs = std::filesystem;
+
+struct CalibrateOptions {
+  std::string session, page, lens_out;
+  std::vector<std::string> without;
+};
 
 json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 json known_or_null(double sigma) { return sigma > 0.0 ? json(sigma) : json(nullptr); }
+json measured_or_null(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
 
 json lights_json(const CalibrationSummary& summary) {
   json lights = json::array();
@@ -35,107 +44,142 @@ json lights_json(const CalibrationSummary& summary) {
   return lights;
 }
 
-json poses_json(const CalibratedSession& session) {
+json poses_json(const CalibratedSession& session, const CalibrationSummary& summary) {
   json poses = json::array();
-  for (const View& view : session.views) {
+  for (std::size_t v = 0; v < session.views.size(); ++v) {
     json rows = json::array();
-    const auto& m = view.camera_from_world.matrix();
+    const auto& m = session.views[v].camera_from_world.matrix();
     for (int r = 0; r < 4; ++r) rows.push_back({m(r, 0), m(r, 1), m(r, 2), m(r, 3)});
-    // Poses come from the rig's geometry or the import as they are: nothing measures their uncertainty yet.
-    poses.push_back({{"view", view.name},
+    const PoseSummary pose = v < summary.poses.size() ? summary.poses[v] : PoseSummary{};
+    poses.push_back({{"view", session.views[v].name},
                      {"camera_from_world", rows},
-                     {"sigma_m", nullptr},
-                     {"sigma_deg", nullptr},
-                     {"silhouette_px", nullptr}});
+                     {"sigma_m", measured_or_null(pose.sigma_m)},
+                     {"sigma_deg", measured_or_null(pose.sigma_deg)},
+                     {"silhouette_px", measured_or_null(pose.silhouette_px)},
+                     {"source", pose.source},
+                     {"tags", pose.tags},
+                     {"dominant", pose.dominant}});
   }
   return poses;
 }
 
-json camera_json(const CameraModel& c) {
+json camera_json(const CalibratedSession& session, const LensSummary& lens) {
+  std::vector<double> params = lens.params;
+  if (params.empty()) {  // imported
+    if (session.views.empty()) return nullptr;
+    const CameraModel& c = session.views[0].camera;
+    params = {c.focal_x_px, c.focal_y_px, c.principal_x_px, c.principal_y_px, c.k1, c.k2, c.p1, c.p2};
+  }
   return {{"model", "OPENCV"},
-          {"params", {c.focal_x_px, c.focal_y_px, c.principal_x_px, c.principal_y_px, c.k1, c.k2, c.p1, c.p2}},
-          {"reprojection_px", nullptr}};
+          {"params", params},
+          {"params_sigma", lens.sigma.empty() ? json(nullptr) : json(lens.sigma)},
+          {"reprojection_px", measured_or_null(lens.reprojection_px)}};
 }
 
-// Distances to the simulated world's truth, where the session carries it.
-struct ErrorFigures {
-  double median_mm = 0, max_mm = 0;
-};
-
-template <typename Position>
-std::optional<ErrorFigures> light_error(const json& truth, const CalibrationSummary& summary,
-                                        const Position& position) {
-  std::map<std::string, Eigen::Vector3d> true_positions;
-  for (const json& light : truth.at("lights")) {
-    const auto p = light.at("position_m").get<std::array<double, 3>>();
-    true_positions[light.at("view").get<std::string>()] = {p[0], p[1], p[2]};
+json result_json(const CalibratedSession& session, const CalibrationSummary& summary) {
+  const bool captured = !summary.intensity.empty();
+  json result = {{"lights", lights_json(summary)},
+                 {"poses", poses_json(session, summary)},
+                 {"camera", camera_json(session, summary.lens)},
+                 {"scale",
+                  {{"value", captured ? json(summary.intensity) : json(nullptr)},
+                   {"sigma", known_or_null(session.gray_card_scale_sigma)}}}};
+  const json all = summary_json(summary);
+  for (const char* key : {"sensor", "lens", "lamp", "pose_problem", "shares", "sphere_residual_px", "arm_residual_m",
+                          "arm_scatter_m", "hot_pixels", "views_without_silhouette"}) {
+    result[key] = captured || !summary.lens.params.empty() ? all.at(key) : json(nullptr);
   }
-  std::vector<double> errors_mm;
-  for (const LightSummary& light : summary.lights) {
-    const auto found = true_positions.find(light.view);
-    if (found != true_positions.end() && light.highlights > 0) {
-      errors_mm.push_back(1e3 * (position(light) - found->second).norm());
-    }
-  }
-  if (errors_mm.empty()) return std::nullopt;
-  std::sort(errors_mm.begin(), errors_mm.end());
-  return ErrorFigures{errors_mm[errors_mm.size() / 2], errors_mm.back()};
+  return result;
 }
 
-void add_truth(const std::filesystem::path& directory, const CalibrationSummary& summary, json& result,
-               std::ostream& text) {
-  const std::filesystem::path path = directory / "truth" / "calibration.json";
-  if (!std::filesystem::exists(path)) return;
-  std::ifstream file(path);
-  try {
-    const json truth = json::parse(file);
-    const auto final_error = light_error(truth, summary, [](const LightSummary& l) { return l.position_in_world; });
-    const auto spheres_error =
-        light_error(truth, summary, [](const LightSummary& l) { return l.spheres_alone_in_world; });
-    if (!final_error || !spheres_error) return;
-    result["light_error_mm"] = {{"median", final_error->median_mm}, {"max", final_error->max_mm}};
-    result["light_error_spheres_alone_mm"] = {{"median", spheres_error->median_mm}, {"max", spheres_error->max_mm}};
-    text << "light position error against the simulated truth: median " << final_error->median_mm << " mm, max "
-         << final_error->max_mm << " mm (by the spheres alone " << spheres_error->median_mm << ", "
-         << spheres_error->max_mm << ")\n";
-  } catch (const json::exception& error) {
-    throw Corrupt(path.string() + ": " + error.what());
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+void describe_poses(const CalibrationSummary& summary, std::ostream& text) {
+  if (!summary.pose_problem.empty()) text << "poses: the rig's description; " << summary.pose_problem << '\n';
+  std::vector<double> distances, sigmas_m, sigmas_deg;
+  for (const PoseSummary& pose : summary.poses) {
+    if (!pose.silhouette_px) continue;
+    distances.push_back(*pose.silhouette_px);
+    sigmas_m.push_back(pose.sigma_m.value_or(0.0));
+    sigmas_deg.push_back(pose.sigma_deg.value_or(0.0));
   }
+  if (distances.empty()) return;
+  text << "poses: silhouettes within " << median(distances) << " px (median), sigma " << 1e3 * median(sigmas_m)
+       << " mm, " << median(sigmas_deg) << " degrees\n";
 }
 
 void describe(const CalibratedSession& session, const CalibrationSummary& summary, std::ostream& text) {
   text << session.views.size() << " views calibrated, " << session.channels << " channels\n";
+  const LensSummary& lens = summary.lens;
+  if (lens.reprojection_px) {
+    text << "lens: " << lens.source << ", " << lens.boards << " boards, re-projection " << *lens.reprojection_px << " px rms";
+    if (lens.corner_transmission) text << ", transmission in the corner " << *lens.corner_transmission;
+    text << '\n';
+  }
+  for (const std::string& note : lens.notes) text << "  " << note << '\n';
+  if (summary.intensity.empty()) return;  // imported: nothing was measured here
   const auto measured = std::count_if(summary.lights.begin(), summary.lights.end(),
                                       [](const LightSummary& light) { return light.from_spheres; });
-  if (summary.intensity.empty()) return;  // imported: nothing was measured here
+  describe_poses(summary, text);
   text << "light: " << measured << " of " << summary.lights.size() << " measured by the spheres, highlights fit to "
        << summary.sphere_residual_px << " px rms, arm within " << 1e3 * summary.arm_residual_m << " mm rms\n"
        << "scale: gray card to " << 100.0 * summary.scale_sigma << " %, intensity";
   for (const double intensity : summary.intensity) text << ' ' << intensity;
-  text << "\nsensor: " << summary.hot_pixels << " hot pixels; " << summary.views_without_silhouette
-       << " views masked by the mesh alone\n";
+  text << "\nlamp: " << (summary.lamp.drifts ? "drifts" : "steady, as far as can be told") << ", "
+       << (summary.lamp.pattern_parameters > 0 ? "with" : "no") << " angular pattern; card read in "
+       << summary.lamp.card_views << " views\nsensor (" << summary.sensor.source << "): "
+       << summary.sensor.electrons_per_dn << " e/DN, read noise " << summary.sensor.read_noise_dn << " DN, "
+       << summary.hot_pixels << " hot pixels; darks scaled in " << summary.sensor.brackets_with_scaled_darks
+       << " brackets\n";
+  for (const std::string& note : summary.sensor.notes) text << "  " << note << '\n';
+  if (summary.views_without_silhouette > 0) {
+    text << summary.views_without_silhouette << " views masked by the mesh alone\n";
+  }
 }
 
-CommandResult run(const std::string& directory, CommandContext& context) {
-  const SessionStore store = SessionStore::open(directory, OpenMode::ReadOnly);
+void write_text(const std::string& path, const std::string& content) {
+  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  file << content;
+  if (!file.flush()) throw Error(path + ": cannot be written");
+}
+
+void copy_lens_file(const fs::path& derived, const std::string& out) {
+  if (!fs::exists(derived / "lens.json")) {
+    throw BadInput("--lens-out", "this session's boards calibrate no lens",
+                   "a session with board shots (a plan with [lens]); see what calibrate says of them");
+  }
+  fs::copy_file(derived / "lens.json", out, fs::copy_options::overwrite_existing);
+}
+
+CalibrationOptions steps_of(const CalibrateOptions& options) {
+  CalibrationOptions steps;
+  for (const std::string& name : options.without) steps.without.insert(calibration_step_from_string(name));
+  return steps;
+}
+
+CommandResult run(const CalibrateOptions& options, CommandContext& context) {
+  const CalibrationOptions steps = steps_of(options);
+  const SessionStore store = SessionStore::open(options.session, OpenMode::ReadOnly);
   CalibrationSummary summary;
-  const CalibratedSession session = calibrate_session(store, context.progress, &summary);
+  const CalibratedSession session = calibrate_session(store, context.progress, &summary, steps);
   CommandResult result;
   std::ostringstream text;
-  const bool captured = !summary.intensity.empty();
-  result.json = {{"lights", lights_json(summary)},
-                 {"poses", poses_json(session)},
-                 {"camera", session.views.empty() ? json(nullptr) : camera_json(session.views[0].camera)},
-                 {"scale",
-                  {{"value", captured ? json(summary.intensity) : json(nullptr)},
-                   {"sigma", known_or_null(session.gray_card_scale_sigma)}}},
-                 {"sphere_residual_px", captured ? json(summary.sphere_residual_px) : json(nullptr)},
-                 {"arm_residual_m", captured ? json(summary.arm_residual_m) : json(nullptr)},
-                 {"arm_scatter_m", captured ? json(summary.arm_scatter_m) : json(nullptr)},
-                 {"hot_pixels", captured ? json(summary.hot_pixels) : json(nullptr)},
-                 {"views_without_silhouette", captured ? json(summary.views_without_silhouette) : json(nullptr)}};
+  result.json = result_json(session, summary);
   describe(session, summary, text);
-  add_truth(store.directory(), summary, result.json, text);
+  const std::optional<TruthComparison> truth = compare_with_truth(store.directory(), session, summary);
+  if (truth) {
+    result.json.update(json::parse(truth->json));
+    text << truth->text;
+  }
+  const fs::path derived = store.derived_directory() / "calibrated" / session.key;
+  if (!options.lens_out.empty()) copy_lens_file(derived, options.lens_out);
+  if (!options.page.empty()) {
+    write_text(options.page, calibration_report(session, summary, derived, truth ? truth->text : "", result.json.dump()));
+  }
   result.text = text.str();
   return result;
 }
@@ -143,11 +187,17 @@ CommandResult run(const std::string& directory, CommandContext& context) {
 }  // namespace
 
 void add_calibrate_command(CLI::App& app, CommandAction& action) {
-  const auto directory = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("calibrate", "Darks, light positions, poses, absolute scale, radiance");
-  command->add_option("SESSION", *directory, "The session's folder")->required();
+  const auto options = std::make_shared<CalibrateOptions>();
+  CLI::App* command =
+      app.add_subcommand("calibrate", "Sensor, lens, poses, light positions, absolute scale, radiance; with uncertainties");
+  command->add_option("SESSION", options->session, "The session's folder")->required();
+  command->add_option("--page", options->page, "Writes what was found as one HTML page, with pictures");
+  command->add_option("--lens-out", options->lens_out, "Writes the lens calibration, for capture --lens");
+  std::string steps;
+  for (const CalibrationStep step : all_calibration_steps()) steps += std::string(steps.empty() ? "" : ", ") + to_string(step);
+  command->add_option("--without", options->without, "Leaves a step out, to see what it is worth: " + steps)->delimiter(',');
   command->callback(
-      [directory, &action] { action = [directory](CommandContext& context) { return run(*directory, context); }; });
+      [options, &action] { action = [options](CommandContext& context) { return run(*options, context); }; });
 }
 
 }  // namespace lumitexel

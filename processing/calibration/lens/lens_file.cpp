@@ -128,7 +128,10 @@ void write_lens_file(const std::filesystem::path& path, const LensRecord& record
 LensRecord read_lens_file(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw BadInput(path.string(), "cannot be opened", "a lens calibration's JSON file");
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  return parse_lens_record(std::string{std::istreambuf_iterator<char>(file), {}}, path.string());
+}
+
+LensRecord parse_lens_record(const std::string& text, const std::string& where) {
   try {
     const json j = json::parse(text);
     if (j.at("version").get<int>() != kVersion) throw Corrupt("another version");
@@ -137,7 +140,7 @@ LensRecord read_lens_file(const std::filesystem::path& path) {
       throw Corrupt("its contents are not those of its fingerprint");
     return record;
   } catch (const std::exception& error) {
-    throw Corrupt(path.string() + ": no lens calibration of version " + std::to_string(kVersion) + ": " + error.what());
+    throw Corrupt(where + ": no lens calibration of version " + std::to_string(kVersion) + ": " + error.what());
   }
 }
 

@@ -43,5 +43,7 @@ void write_lens_file(const std::filesystem::path& path, const LensRecord& record
 // Throws BadInput if there is no such file; Corrupt naming it if it is not a lens file of this version, or if its
 // contents are not those that its fingerprint was made of.
 LensRecord read_lens_file(const std::filesystem::path& path);
+// The same of a file's text; `where` names it in errors.
+LensRecord parse_lens_record(const std::string& text, const std::string& where);
 
 }  // namespace lumitexel

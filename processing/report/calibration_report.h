@@ -1,0 +1,18 @@
+// A session's calibration as one offline page: what was measured, how well, by what, and what to look at.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "processing/calibration/calibrated_session.h"
+#include "processing/calibration/calibration_summary.h"
+
+namespace lumitexel {
+
+// pictures: the folder that holds summary.pictures. truth_text: lines about a simulated session's truth; may be empty.
+// data_json goes into the page's data block.
+std::string calibration_report(const CalibratedSession& session, const CalibrationSummary& summary,
+                               const std::filesystem::path& pictures, const std::string& truth_text,
+                               const std::string& data_json);
+
+}  // namespace lumitexel
