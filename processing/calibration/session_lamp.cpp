@@ -117,6 +117,7 @@ SessionLamp measure_lamp(const CapturedInputs& in, const SessionLights& lights, 
     summary.lamp.factor_sigma.push_back(factor.sigma);
   }
   const LampFactor at_card = drift.intensity(card.time_s);
+  const double at_card_sigma = at_card.sigma / at_card.factor;
   for (const double ratio : ratios) summary.intensity.push_back(at_card.factor * ratio);
   summary.gray_card_pixel_scatter = card.reading->pixel_scatter;
   summary.lamp.drifts = drift.drifts();
@@ -125,9 +126,9 @@ SessionLamp measure_lamp(const CapturedInputs& in, const SessionLights& lights, 
   // Lights are all wrong by as much where the sphere line is.
   const double common_light =
       2.0 * lights.shared_sigma_m / (card.light_in_rig - card.reading->card_in_rig).norm();
-  lamp.scale_sigma = std::hypot(at_card.sigma, card.reading->pose_sigma, common_light);
+  lamp.scale_sigma = std::hypot(at_card_sigma, card.reading->pose_sigma, common_light);
   summary.scale_sigma = lamp.scale_sigma;
-  add_shares(summary, {{"card's pixels, lights and drift", at_card.sigma},
+  add_shares(summary, {{"card's pixels, lights and drift", at_card_sigma},
                        {"card's pose", card.reading->pose_sigma},
                        {"sphere line", common_light}});
   return lamp;

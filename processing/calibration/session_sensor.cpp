@@ -8,6 +8,9 @@
 namespace lumitexel {
 namespace {
 
+// A lamp that changes by a few tenths of a percent within a bracket bends a curve by up to this; sensors that are not
+// linear are so by far more.
+constexpr double kLampBends = 0.02;
 constexpr std::size_t kBracketsAsked = 4;  // more tell little new, and all are held in memory at once
 
 // Brackets spread over the session: their views, and so the radiances, differ.
@@ -63,7 +66,7 @@ RadianceReader measure_sensor(const CapturedFrames& frames, const CapturedInputs
   // The response first: a curve looks like noise to a photon transfer that takes the sensor for linear.
   if (options.takes(CalibrationStep::Response)) {
     ResponseFit response = fit_response(brackets, model.sensor);
-    model.response = std::move(response.curve);
+    if (response.largest_departure > kLampBends) model.response = std::move(response.curve);
     if (model.response) summary.sensor.notes.emplace_back("the sensor is not linear: a response curve is undone");
   }
   if (options.takes(CalibrationStep::PhotonTransfer) && !model.response) {

@@ -13,8 +13,11 @@ constexpr double kTrimmedVariance = 0.973337;  // of a normal distribution cut a
 constexpr double kMadToSigma = 1.4826;
 constexpr double kSurelyClipped = 1.25;
 
+// expected_dn: the difference's standard deviation by the sensor's description. A bin spans a range of signals; trimmed in
+// these units its differences are of one kind, where in DN a mixture of narrow and wide ones would lose its wide ones.
 struct PixelPair {
-  float signal_dn, difference_dn;
+  float signal_dn, difference_dn, expected_dn;
+  double normalised() const { return static_cast<double>(difference_dn) / static_cast<double>(expected_dn); }
 };
 
 double signal_dn(const DarkedExposure& e, std::size_t i) {
@@ -31,31 +34,34 @@ double median_of(Values& values, const Of& of) {
 DifferenceBin bin_of(std::vector<PixelPair> pixels) {
   DifferenceBin bin;
   bin.pixels = static_cast<double>(pixels.size());
-  for (const PixelPair& p : pixels) bin.signal_dn += static_cast<double>(p.signal_dn) / bin.pixels;
-  const double median = median_of(pixels, [](const PixelPair& p) { return static_cast<double>(p.difference_dn); });
-  double sigma = kMadToSigma * median_of(pixels, [&](const PixelPair& p) {
-    return std::abs(static_cast<double>(p.difference_dn) - median);
-  });
-  double centre = median;
+  double expected_variance_dn2 = 0.0;
+  for (const PixelPair& p : pixels) {
+    bin.signal_dn += static_cast<double>(p.signal_dn) / bin.pixels;
+    expected_variance_dn2 += static_cast<double>(p.expected_dn) * static_cast<double>(p.expected_dn) / bin.pixels;
+  }
+  double centre = median_of(pixels, [](const PixelPair& p) { return p.normalised(); });
+  double sigma = kMadToSigma * median_of(pixels, [&](const PixelPair& p) { return std::abs(p.normalised() - centre); });
   for (int pass = 0; pass < 8; ++pass) {
-    double sum = 0.0, squares = 0.0, count = 0.0;
+    double sum = 0.0, squares = 0.0, differences = 0.0, count = 0.0;
     for (const PixelPair& p : pixels) {
-      const double off = static_cast<double>(p.difference_dn) - centre;
+      const double off = p.normalised() - centre;
       if (std::abs(off) > kTrimSigmas * sigma) continue;
       sum += off;
       squares += off * off;
+      differences += static_cast<double>(p.difference_dn);
       count += 1.0;
     }
     if (count < 2.0) break;
     const double mean = sum / count;
     centre += mean;
-    bin.variance_dn2 = (squares / count - mean * mean) * count / (count - 1.0) / kTrimmedVariance;
+    const double variance = (squares / count - mean * mean) * count / (count - 1.0) / kTrimmedVariance;
+    bin.variance_dn2 = variance * expected_variance_dn2;
+    bin.median_dn = differences / count;
     bin.trimmed = bin.pixels - count;
     const double before = sigma;
-    sigma = std::sqrt(bin.variance_dn2);
+    sigma = std::sqrt(variance);
     if (std::abs(sigma - before) < 1e-6 * sigma) break;
   }
-  bin.median_dn = centre;
   return bin;
 }
 
@@ -77,7 +83,8 @@ PairBins difference_bins(const DarkedExposure& shorter, const DarkedExposure& lo
     const double dark2_dn = static_cast<double>(longer.dark->mean_dn[i]) - sensor.black_level_dn;
     const double merged_sigma = std::sqrt(1.0 / (1.0 / (a * a * v1) + 1.0 / v2));
     if (merged + dark2_dn > range_dn - kClearSigmas * (std::sqrt(v2) + merged_sigma)) continue;
-    pixels.push_back({static_cast<float>(merged), static_cast<float>(a * x1 - x2)});
+    const double expected = std::sqrt(a * a * sensor.variance_dn2(std::max(0.0, merged) / a) + sensor.variance_dn2(std::max(0.0, merged)));
+    pixels.push_back({static_cast<float>(merged), static_cast<float>(a * x1 - x2), static_cast<float>(expected)});
   }
   std::sort(pixels.begin(), pixels.end(), [](const PixelPair& p, const PixelPair& q) {
     return p.signal_dn != q.signal_dn ? p.signal_dn < q.signal_dn : p.difference_dn < q.difference_dn;

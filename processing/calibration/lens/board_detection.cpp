@@ -15,6 +15,21 @@ namespace {
 
 using Grid = std::vector<Eigen::Vector2d>;  // row by row
 
+// Three searches, the quickest first: each finds boards that the others miss. All end in our own measurement of the corners,
+// so how well a search places them does not matter.
+bool find_pattern(const cv::Mat& picture, const cv::Size& corners, std::vector<cv::Point2f>& found) {
+  constexpr int kHalfWindow_px = 4, kRounds = 30;
+  constexpr double kStill_px = 0.01;
+  if (cv::findChessboardCorners(picture, corners, found,
+                                cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK)) {
+    cv::cornerSubPix(picture, found, {kHalfWindow_px, kHalfWindow_px}, {-1, -1},
+                     {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, kRounds, kStill_px});
+    return true;
+  }
+  return cv::findChessboardCornersSB(picture, corners, found, cv::CALIB_CB_NORMALIZE_IMAGE) ||
+         cv::findChessboardCornersSB(picture, corners, found, cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE);
+}
+
 // OpenCV's corners in our pixels, rows and columns so that x runs right and y up when the board is seen from its front.
 Grid find_corners(const MosaicRadiance& image, const BoardDescription& board) {
   GrayPicture picture = visible_picture(image);
@@ -24,7 +39,7 @@ Grid find_corners(const MosaicRadiance& image, const BoardDescription& board) {
   cv::Mat small = whole;
   if (scale > 1.0) cv::resize(whole, small, {}, 1.0 / scale, 1.0 / scale, cv::INTER_AREA);
   std::vector<cv::Point2f> found;
-  if (!cv::findChessboardCornersSB(small, {board.columns, board.rows}, found, cv::CALIB_CB_NORMALIZE_IMAGE)) return {};
+  if (!find_pattern(small, {board.columns, board.rows}, found)) return {};
   Grid grid;
   // OpenCV has the centre of the top-left pixel at (0, 0).
   for (const cv::Point2f& p : found)

@@ -90,7 +90,8 @@ std::optional<PatchFit> fit_patch(const std::vector<PatchSample>& samples, const
       damping = std::max(1e-9, 0.1 * damping);
     } else {
       damping *= 10.0;
-      if (damping > 1e8) return std::nullopt;
+      // No step, however small, makes it better: a minimum, if one with a kink.
+      converged = damping > 1e8;
     }
   }
   if (!converged) return std::nullopt;
