@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <atomic>
 #include <optional>
 
@@ -87,6 +88,28 @@ PoseSummary summarise(const RegisteredView& view, const std::string& name, int t
   return pose;
 }
 
+// Squared distance of a pose from the registered one in units of the latter's covariance.
+double squared_distance(const Eigen::Isometry3d& pose, const RegisteredView& view, const Eigen::Vector3d& middle) {
+  const Eigen::AngleAxisd turn(pose.linear() * view.camera_from_mesh.linear().transpose());
+  PoseStep step;
+  step << turn.angle() * turn.axis(), pose * middle - view.camera_from_mesh * middle;
+  return step.dot(view.covariance.ldlt().solve(step));
+}
+
+// Whether the views contradict the description: a pose that they do not tell from it would only add their noise.
+bool contradicts(const TurntableRegistration& result, const std::vector<Eigen::Isometry3d>& nominal,
+                 const Eigen::Vector3d& middle) {
+  constexpr double kChiSquare6At95 = 12.592;
+  std::vector<double> distances;
+  for (std::size_t v = 0; v < nominal.size(); ++v) {
+    distances.push_back(squared_distance(nominal[v], result.views[v], middle));
+  }
+  // All views share their unknowns, so they are no independent witnesses: the middle one speaks for them.
+  const auto median = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), median, distances.end());
+  return !(*median < kChiSquare6At95);
+}
+
 }  // namespace
 
 SessionPoses measure_poses(const CapturedInputs& in, const std::vector<ViewFrames>& views, const RadianceReader& reader,
@@ -101,9 +124,14 @@ SessionPoses measure_poses(const CapturedInputs& in, const std::vector<ViewFrame
     return poses;
   }
   poses.registered = true;
+  const bool moved = contradicts(result, poses.camera_from_world, extent_of(in.mesh).centre);
   for (std::size_t v = 0; v < views.size(); ++v) {
-    poses.camera_from_world[v] = result.views[v].camera_from_mesh;
     summary.poses[v] = summarise(result.views[v], in.plan.views[v].name, on_table(tags[v], in.rig.tags));
+    if (moved) {
+      poses.camera_from_world[v] = result.views[v].camera_from_mesh;
+    } else {
+      summary.poses[v].source = "rig description, confirmed";
+    }
   }
   return poses;
 }

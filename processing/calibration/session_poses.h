@@ -16,10 +16,11 @@ namespace lumitexel {
 
 struct SessionPoses {
   std::vector<Eigen::Isometry3d> camera_from_world;  // by view; world: the mesh's frame
-  bool registered = false;                           // false: as the rig's description has it
+  bool registered = false;  // false: as the rig's description has it, and nobody knows how well that is
 };
 
-// The mesh registered to all silhouettes and the table's tags at once. The rig's description stays where the silhouettes
+// The mesh registered to all silhouettes and the table's tags at once. What comes out replaces the rig's description only if
+// it contradicts it (5 % level); else the description stays, with the registration's uncertainty. It stays, too, where the silhouettes
 // do not determine the poses (symmetric objects) or the registration does not come to an end; summary.pose_problem then
 // says why. Fills in summary.poses.
 SessionPoses measure_poses(const CapturedInputs& in, const std::vector<ViewFrames>& views, const RadianceReader& reader,

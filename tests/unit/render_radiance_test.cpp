@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/placed_scene.h"
 #include "sim/render_radiance.h"
 #include "simulated_bench.h"
 
@@ -134,7 +135,7 @@ TEST(PlacedScene, TheObjectShadesCardAndSpheresAndTurnsWithTheTable) {
     card.point = scene.mesh_from_rig() * world->rig.gray_card.centre_in_rig;
     SceneHit sphere;
     sphere.part = ScenePart::Sphere;  // its lowest point
-    sphere.point = scene.table_from_rig() * (world->sphere_centres_in_rig()[2] - Eigen::Vector3d(0, 0, 0.02));
+    sphere.point = scene.mesh_from_rig() * (world->sphere_centres_in_rig()[2] - Eigen::Vector3d(0, 0, 0.02));
     const auto beyond_axis = [&](const SceneHit& from) {  // a light on the far side of the turntable's axis
       return Eigen::Vector3d(from.point + 8.0 * (Eigen::Vector3d(0, 0, -0.01) - from.point));
     };

@@ -19,6 +19,10 @@ constexpr double kOutlierSigmas = 5.0;
 // Chi-square that a parameter has to save, over the residuals' own scale: a needless one saves 15 once in 10,000 fits.
 constexpr double kLeastGain = 15.0;
 
+// What lamps are like before any sample: pointed at the pivot to some ten degrees, not narrower than a torch. A board that
+// fills a few degrees would else be explained by a lamp that points far aside.
+const Eigen::Vector4d kPriorSigma(30.0, 0.17, 0.17, 30.0);
+
 Eigen::Vector3d lamp_axis(const Parameters& p) { return Eigen::Vector3d(p[1], p[2], 1.0).normalized(); }
 
 double log_term(const Parameters& p, double cosine) {
@@ -91,7 +95,7 @@ class PatternProblem {
   }
   double cost(const State& state, double scale) const {
     const double bound2 = kOutlierSigmas * kOutlierSigmas * scale * scale;
-    double sum = 0.0;
+    double sum = scale * scale * state.p.cwiseQuotient(kPriorSigma).squaredNorm();
     for (const LogSample& s : samples_) sum += bound2 * std::log1p(std::pow(residual(state, s), 2) / bound2);
     return sum;
   }
@@ -123,6 +127,9 @@ class PatternProblem {
       r.normal -= r.mean_row[v].transpose() * r.mean_row[v] / r.weight[v];
       r.right -= r.mean_row[v].transpose() * r.mean_value[v] / r.weight[v];
     }
+    const Eigen::Vector4d prior = scale * scale * kPriorSigma.cwiseAbs2().cwiseInverse();
+    r.normal += prior.asDiagonal();
+    r.right -= prior.cwiseProduct(state.p);
     return r;
   }
 
@@ -200,6 +207,32 @@ State start_state(const PatternProblem& problem) {
   return state;
 }
 
+// n and tilt from the pattern's expansion about z, which is linear: log p = n (tilt . u) - n |u|^2 / 2, u = (x, y) / z.
+Parameters expanded_pattern(const PatternProblem& problem) {
+  std::vector<Eigen::Vector4d> sums(problem.views(), Eigen::Vector4d::Zero());  // of u, |u|^2 / 2, log value
+  std::vector<double> counts(problem.views(), 0.0);
+  const auto terms = [](const LogSample& s) {
+    const Eigen::Vector2d u = s.direction.head<2>() / s.direction.z();
+    return Eigen::Vector4d(u.x(), u.y(), 0.5 * u.squaredNorm(), s.value);
+  };
+  for (const LogSample& s : problem.samples()) {
+    sums[s.view] += terms(s);
+    counts[s.view] += 1.0;
+  }
+  Eigen::Matrix3d normal = 1e-9 * Eigen::Matrix3d::Identity();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (const LogSample& s : problem.samples()) {
+    const Eigen::Vector4d t = terms(s) - sums[s.view] / counts[s.view];
+    normal += t.head<3>() * t.head<3>().transpose();
+    right += t.head<3>() * t[3];
+  }
+  const Eigen::Vector3d solution = normal.ldlt().solve(right);
+  constexpr double kLeastExponent = 0.5, kMostExponent = 60.0;
+  const double n = std::clamp(-solution.z(), kLeastExponent, kMostExponent);
+  const Eigen::Vector2d tilt = (solution.head<2>() / n).cwiseMax(-kPriorSigma[1]).cwiseMin(kPriorSigma[1]);
+  return {n, tilt.x(), tilt.y(), 0.0};
+}
+
 PatternFit summary_of(const PatternProblem& problem, const State& state, const std::array<bool, 4>& free) {
   PatternFit fit;
   fit.converged = state.converged;
@@ -269,7 +302,7 @@ PatternFit fit_lamp_pattern(const std::vector<PatternSample>& samples) {
       {{false, false, false, false}, {true, false, false, false}, {true, true, true, false}, {true, true, true, true}}};
   // The scale of the richest model: a poorer one's misfit must not excuse itself.
   State rich = start_state(problem);
-  rich.p[0] = 0.5;  // the tilt means nothing at n = 0
+  rich.p = expanded_pattern(problem);
   // Shrinking, so that a shadow across a part of the samples loses its hold step by step.
   constexpr int kRounds = 12;
   for (int round = 0; round < kRounds; ++round) {
@@ -284,7 +317,7 @@ PatternFit fit_lamp_pattern(const std::vector<PatternSample>& samples) {
   for (std::size_t k = 1; k < kSteps.size(); ++k) {
     State start = best;
     start.converged = false;
-    if (start.p[0] == 0.0) start.p[0] = 0.5;
+    if (chosen < 2) start.p = k == 1 ? Parameters(rich.p[0], 0.0, 0.0, 0.0) : expanded_pattern(problem);
     const State candidate = problem.solve(kSteps[k], start, scale);
     if (best.chi2 - candidate.chi2 < kLeastGain * scale * scale) continue;
     best = candidate;

@@ -135,7 +135,7 @@ std::vector<float> board_electrons(const CameraModel& camera, const Eigen::Isome
 
 MosaicRadiance noisy_picture(const CameraModel& camera, const std::vector<float>& electrons,
                              const PictureOptions& options, std::uint64_t seed) {
-  MosaicRadiance image{camera.width_px, camera.height_px, options.mosaic, electrons, electrons, {}};
+  MosaicRadiance image{camera.width_px, camera.height_px, options.mosaic, electrons, electrons, {}, false, {}};
   image.flags.assign(electrons.size(), 0);
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;

@@ -26,7 +26,9 @@ MosaicRadiance flat(const FlatOptions& options, std::uint64_t seed) {
                        options.mosaic,
                        std::vector<float>(320 * 240),
                        std::vector<float>(320 * 240),
-                       std::vector<std::uint8_t>(320 * 240)};
+                       std::vector<std::uint8_t>(320 * 240),
+                       false,
+                       {}};
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   for (int y = 0; y < 240; ++y) {
