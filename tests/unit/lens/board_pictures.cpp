@@ -102,7 +102,7 @@ std::vector<float> board_electrons(const CameraModel& camera, const Eigen::Isome
   const int reach = static_cast<int>(std::ceil(3.5 * options.blur_px + 0.5));
   // Every pixel takes another stretch of one low-discrepancy sequence: with the same points everywhere, an edge's steps
   // line up and its place is wrong by 0.005 px.
-  constexpr std::size_t kPoints = 800, kAll = 20'000;
+  constexpr std::size_t kPoints = 3'200, kAll = 60'000;
   const auto points = spread_points(options.blur_px, kAll);
   std::mt19937_64 random(1);
   std::uniform_int_distribution<std::size_t> first_point(0, kAll - kPoints);
