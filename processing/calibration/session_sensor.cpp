@@ -64,7 +64,7 @@ RadianceReader measure_sensor(const CapturedFrames& frames, const CapturedInputs
   SensorModel model{in.nominal_sensor, std::nullopt, options.takes(CalibrationStep::DarkScale)};
   const std::vector<std::vector<Frame>> brackets = some_brackets(frames, views);
   // The response first: a curve looks like noise to a photon transfer that takes the sensor for linear.
-  if (options.takes(CalibrationStep::Response)) {
+  if (options.takes(CalibrationStep::Response) && !brackets.empty()) {
     ResponseFit response = fit_response(brackets, model.sensor);
     if (response.largest_departure > kLampBends) model.response = std::move(response.curve);
     if (model.response) summary.sensor.notes.emplace_back("the sensor is not linear: a response curve is undone");
