@@ -36,10 +36,16 @@ struct ResponseFit {
   int freedoms = 0;
   double largest_departure = 0;     // from a straight line through the origin, relative, over `points`
   double residual_scale = 0;        // root of the residuals' reduced chi-square; 1 if the noise model is right
+  // Of linear_dn, from the residuals: merge with it. A linear sensor's is no guide, for the scale of the curve is free.
+  double electrons_per_dn = 0;
+  bool electrons_measured = false;  // else the sensor's own: too few pixels in which shot noise prevails
   int pixels = 0, iterations = 0;
 };
 
 inline constexpr double kNegligibleCurvature = 0.001;
+
+// The usable range.
+inline constexpr double kUsableFrom = 0.01, kUsableTo = 0.98, kUsableElectrons = 25.0;
 
 // brackets: each of one still scene at two or more exposures whose times differ; black is subtracted as sensor.black_level
 // says (dark current belongs to the light; keep exposures short). sensor: clip_dn bounds the codes; its noise in code

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "processing/image/fit_response.h"
 #include "processing/image/linear_sensor.h"
 
 namespace lumitexel {
@@ -72,6 +73,28 @@ inline LinearSensor sensor_of_bits(int bits) {
   sensor.read_noise_dn = bits == 8 ? 0.3 : 4.0 / sensor.electrons_per_dn;
   sensor.clip_dn = top;
   return sensor;
+}
+
+// Errors of `linear`, from code in units of the range to light at any scale, all along the usable range.
+template <typename Linear>
+std::vector<double> relative_errors(const CurvedResponse& truth, const LinearSensor& sensor, const Linear& linear) {
+  const double scale = truth.light(0.5) / linear(0.5);
+  const double electrons = sensor.electrons_per_dn * (sensor.clip_dn - sensor.black_level_dn);
+  const double from = std::max(kUsableFrom, truth.code(kUsableElectrons / electrons));
+  std::vector<double> errors;
+  for (int i = 0; i <= 400; ++i) {
+    const double u = from + (kUsableTo - from) * std::pow(i / 400.0, 2);  // as the knots lie: more of the dim end
+    errors.push_back(linear(u) * scale / truth.light(u) - 1.0);
+  }
+  return errors;
+}
+
+// A sensor that got no curve is taken for linear.
+inline std::vector<double> response_errors(const ResponseFit& fit, const CurvedResponse& truth,
+                                           const LinearSensor& sensor) {
+  return relative_errors(truth, sensor, [&](double u) {
+    return fit.curve ? fit.curve->linear_dn(sensor.black_level_dn + u * (sensor.clip_dn - sensor.black_level_dn)) : u;
+  });
 }
 
 }  // namespace lumitexel
