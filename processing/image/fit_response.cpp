@@ -15,16 +15,18 @@ namespace {
 using Vector = ResponseSpline::Vector;
 using Matrix = Eigen::Matrix<double, ResponseSpline::kCoefficients, ResponseSpline::kCoefficients>;
 
-constexpr int kMostPixels = 40'000, kFewestPixels = 200, kMostIterations = 40;
-constexpr int kCandidates = 200'000;
-constexpr int kSettling = 8;            // iterations that choose samples and measure the shot noise; then both stay
-constexpr double kShotDominates = 1.0;  // over all other variance
+constexpr int kMostPixels = 160'000, kFewestPixels = 200, kMostIterations = 40;
+constexpr int kCandidates = 600'000;
+constexpr int kSettling = 6;                // iterations that choose samples and measure the shot noise; then both stay
+constexpr double kShotDominates = 1.0;      // over all other variance
 constexpr double kFewestFreedoms = 1000.0;  // to measure shot noise to 5 %
-constexpr double kCertainSigmas = 5.0;  // a censored sample expected so far above the bound tells nothing
-constexpr double kDimmest = 12.0;       // electrons: below, more than the second derivative bends the mean code
-constexpr double kFewestElectrons = 600.0;  // of a pixel: each rate is fitted as well, which bends the curve by some 1 / this
+constexpr double kCertainSigmas = 5.0;      // a censored sample expected so far above the bound tells nothing
+constexpr double kDimmest = 12.0;           // electrons: below, more than the second derivative bends the mean code
+constexpr double kSmooth = 400.0;           // electrons: from here on a curve is a parabola within the shot noise
+constexpr double kFewestElectrons =
+    600.0;  // of a pixel: each rate is fitted as well, which bends the curve by some 1 / this
 constexpr double kOutlierSigmas = 6.0;
-constexpr double kBendSigma = 0.03;    // prior on second differences of the log slope: a decade is 2.3
+constexpr double kBendSigma = 0.06;  // prior on second differences of the log slope: sRGB's kink is about twice that
 constexpr double kConverged = 0.01;
 constexpr double kWorstRelativeSigma = 0.05;
 constexpr int kPoints = 65;
@@ -40,7 +42,7 @@ struct Pixel {
   double rate;                  // linear value in units of the range, per second
 };
 
-struct Scaled {  // the sensor in units of its range
+struct Scaled {                          // the sensor in units of its range
   double range_dn, usable, shot, reads;  // usable: the lower edge of the least censored code
   explicit Scaled(const LinearSensor& sensor) : range_dn(sensor.clip_dn - sensor.black_level_dn) {
     usable = (std::ceil(sensor.usable_below_dn()) - 0.5 - sensor.black_level_dn) / range_dn;
@@ -118,6 +120,10 @@ struct Reduced {
 // A sample about the curve's prediction.
 struct Linearised {
   double residual, weight, by_rate, predicted, slope;
+};
+
+struct ShotNoise {
+  double bend, variance;  // of the code
 };
 
 // Density over distribution of the standard normal.
@@ -218,7 +224,6 @@ class Fit {
       step *= std::min(1.0, 1.0 / std::max(1e-300, step.cwiseAbs().maxCoeff()));
       coefficients_ += step;
       fix_scale();
-      if (std::getenv("RAD_TRACE")) std::printf("%d pixels %d samples %g chi2 %g decrement %g step %g range %g %g shot %g\n", iteration, reduced_.pixels, reduced_.samples, reduced_.chi_square, slope.dot(step), step.cwiseAbs().maxCoeff(), reduced_.lowest, reduced_.highest, sensor_.shot * 18000);
       // In units of chi-square: a coefficient that the samples do not know may move on for ever.
       if (slope.dot(step) < kConverged && iteration > kSettling) return iteration;
     }
@@ -267,15 +272,33 @@ class Fit {
     fix_scale();
   }
 
+  // What shot noise makes of the code at `light`, the code of the mean known. A curve that bends within the noise moves
+  // the mean code away from it: by the second derivative, and below kSmooth by Gauss and Hermite's rule, for curves
+  // have kinks.
+  ShotNoise shot_noise(const ResponseSpline& curve, double light, double code, double slope) const {
+    const double variance = sensor_.shot * std::max(light, 0.0);
+    const double spread = variance / (slope * slope);
+    if (light > kSmooth * sensor_.shot || light < 0.5 * kDimmest * sensor_.shot)
+      return {-0.5 * curve.log_slope_slope(code) * spread, spread};
+    double mean = 0.0, square = 0.0;
+    for (const auto& [sigmas, weight] : {std::pair{1.35562618, 0.22207592}, {2.85697001, 0.01125741}}) {
+      for (const double sign : {-1.0, 1.0}) {
+        const double off = curve.inverse(light + sign * sigmas * std::sqrt(variance)) - code;
+        mean += weight * off;
+        square += weight * off * off;
+      }
+    }
+    return {mean, square - mean * mean};
+  }
+
   Linearised linearised(const ResponseSpline& curve, const Sample& sample, double rate) const {
     const double light = rate * sample.time_s;
     Linearised at;
     at.predicted = curve.inverse(light);
     at.slope = curve.slope(at.predicted);
     at.by_rate = sample.time_s / at.slope;
-    const double spread = sensor_.shot * std::max(light, 0.0) / (at.slope * at.slope), variance = sensor_.reads + spread;
-    // A curve that bends within the shot noise moves the mean code away from the code of the mean.
-    const double bend = -0.5 * curve.log_slope_slope(at.predicted) * spread;
+    const auto [bend, spread] = shot_noise(curve, light, at.predicted, at.slope);
+    const double variance = sensor_.reads + spread;
     if (!sample.censored) {
       at.residual = sample.u - at.predicted - bend;
       at.weight = 1.0 / variance;
@@ -389,7 +412,8 @@ void state_points(const Fit& fit, const LinearSensor& sensor, const Scaled& scal
   for (const ResponsePoint& point : result.points) {
     const double straight = (point.code_dn - sensor.black_level_dn) * std::exp(sum / weights);
     const double departure = std::abs(point.linear_dn / straight - 1.0);
-    if (departure > 2.0 * point.relative_sigma) result.largest_departure = std::max(result.largest_departure, departure);
+    if (departure > 2.0 * point.relative_sigma)
+      result.largest_departure = std::max(result.largest_departure, departure);
   }
 }
 
@@ -424,7 +448,8 @@ ResponseFit fit_response(const std::vector<std::vector<Frame>>& brackets, const 
   result.residual_scale = std::sqrt(reduced.chi_square / std::max(1.0, freedoms));
   result.electrons_per_dn = 1.0 / (fit.shot() * scaled.range_dn);
   result.electrons_measured = fit.shot_measured();
-  result.freedoms = ResponseSpline::kCoefficients - 1;
+  const Matrix known = fit.covariance() * reduced.normal;  // the prior keeps the rest from moving at all
+  result.freedoms = std::max(1, static_cast<int>(std::lround((known * known).trace())));
   result.chi_square = fit.coefficients().dot(reduced.normal * fit.coefficients()) /
                       std::max(1.0, result.residual_scale * result.residual_scale);
   state_points(fit, sensor, scaled, result);

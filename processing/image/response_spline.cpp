@@ -38,6 +38,7 @@ ResponseSpline::ResponseSpline(const Vector& c) {
     const double u0 = at_place(i * ds), u1 = at_place((i + 0.5) * ds), u2 = at_place((i + 1.0) * ds);
     const Vector here = basis(u0);
     const double slope = std::exp(here.dot(c));
+    nodes_.push_back(u0);
     values_.push_back(value);
     slopes_.push_back(slope);
     gradients_.push_back(gradient);
@@ -50,19 +51,17 @@ ResponseSpline::ResponseSpline(const Vector& c) {
   }
 }
 
-ResponseSpline::Within ResponseSpline::within(double u) {
-  const double at = place(std::clamp(u, 0.0, 1.0)) * kCells;
-  const auto cell = std::min(static_cast<std::size_t>(at), static_cast<std::size_t>(kCells - 1));
-  return {cell, at - static_cast<double>(cell)};
+ResponseSpline::Within ResponseSpline::within(double u) const {
+  const double inside = std::clamp(u, 0.0, 1.0);
+  const auto cell = std::min(static_cast<std::size_t>(place(inside) * kCells), static_cast<std::size_t>(kCells - 1));
+  return {cell, (inside - nodes_[cell]) / (nodes_[cell + 1] - nodes_[cell])};
 }
 
 double ResponseSpline::linear(double u) const {
   if (u <= 0.0) return u * slopes_.front();
   if (u >= 1.0) return values_.back() + (u - 1.0) * slopes_.back();
   const auto [i, part] = within(u);
-  // The slope changes little within a cell.
-  const double here = (1.0 - part) * slopes_[i] + part * slopes_[i + 1];
-  return values_[i] + (u - at_place(static_cast<double>(i) / kCells)) * 0.5 * (slopes_[i] + here);
+  return values_[i] + (u - nodes_[i]) * (slopes_[i] + 0.5 * part * (slopes_[i + 1] - slopes_[i]));
 }
 
 double ResponseSpline::slope(double u) const {
@@ -72,8 +71,7 @@ double ResponseSpline::slope(double u) const {
 
 double ResponseSpline::log_slope_slope(double u) const {
   const std::size_t i = within(u).cell;
-  return std::log(slopes_[i + 1] / slopes_[i]) /
-         (at_place(static_cast<double>(i + 1) / kCells) - at_place(static_cast<double>(i) / kCells));
+  return std::log(slopes_[i + 1] / slopes_[i]) / (nodes_[i + 1] - nodes_[i]);
 }
 
 double ResponseSpline::inverse(double value) const {
@@ -81,9 +79,9 @@ double ResponseSpline::inverse(double value) const {
   if (value >= values_.back()) return 1.0 + (value - values_.back()) / slopes_.back();
   const auto above = std::upper_bound(values_.begin(), values_.end(), value);
   const auto i = static_cast<std::size_t>(above - values_.begin()) - 1;
-  double u = at_place((static_cast<double>(i) + 0.5) / kCells);
-  for (int step = 0; step < 3; ++step) u -= (linear(u) - value) / slope(u);
-  return u;
+  // The root of the cell's parabola, in the form that a straight line does not upset.
+  const double bend = (slopes_[i + 1] - slopes_[i]) / (nodes_[i + 1] - nodes_[i]), over = value - values_[i];
+  return nodes_[i] + 2.0 * over / (slopes_[i] + std::sqrt(std::max(0.0, slopes_[i] * slopes_[i] + 2.0 * bend * over)));
 }
 
 ResponseSpline::Vector ResponseSpline::linear_gradient(double u) const {

@@ -20,7 +20,7 @@ using namespace lumitexel;
 const std::vector<double> kUneven_s{0.004, 0.012, 0.060, 0.252}, kEven_s{0.004, 0.016, 0.064, 0.256};
 
 struct Options {
-  int trials = 5, pixels = 40'000;
+  int bits = 0, trials = 5, pixels = 160'000;
   std::uint64_t seed = 1;
   bool profile = false, even = false;
 };
@@ -104,7 +104,8 @@ void print_row(int bits, const CurvedResponse& truth, const Options& options) {
   double residual_scale = 0.0, iterations = 0.0;
   for (int trial = 0; trial < options.trials; ++trial) {
     const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(trial);
-    const std::vector<Frame> frames = curved_bracket(truth, sensor, bits, options.even ? kEven_s : kUneven_s, seed, options.pixels);
+    const std::vector<Frame> frames =
+        curved_bracket(truth, sensor, bits, options.even ? kEven_s : kUneven_s, seed, options.pixels);
     const ResponseFit fit = fit_response({frames}, sensor);
     if (fit.determined) {
       fits.push_back(fit);
@@ -119,7 +120,8 @@ void print_row(int bits, const CurvedResponse& truth, const Options& options) {
   const double n = std::max(1.0, static_cast<double>(fits.size()));
   std::printf("%2d bits %-16s", bits, truth.name.c_str());
   ours.print("ours");
-  std::printf(" (%zu/%d, residuals %.3f, %.0f iterations)", fits.size(), options.trials, residual_scale / n, iterations / n);
+  std::printf(" (%zu/%d, residuals %.3f, %.0f iterations)", fits.size(), options.trials, residual_scale / n,
+              iterations / n);
   if (bits == 8 && !options.profile) {
     debevec.print("Debevec");
     robertson.print("Robertson");
@@ -137,11 +139,13 @@ int main(int argc, char** argv) {
   app.add_option("--seed", options.seed, "the first of them");
   app.add_option("--pixels", options.pixels, "of each frame")->check(CLI::Range(1000, 10'000'000));
   app.add_flag("--profile", options.profile, "error, scatter and stated sigma along the curve; without OpenCV");
+  app.add_option("--bits", options.bits, "only these")->check(CLI::IsMember({8, 12, 14}));
   app.add_flag("--even", options.even, "exposures at ratios of 4 instead of 3, 5 and 4.2");
   CLI11_PARSE(app, argc, argv);
-  std::printf("%s\n%d seeds, %d pixels: largest error in %% (median, worst seed), rms error in %%\n", machine_line().c_str(),
-              options.trials, options.pixels);
+  std::printf("%s\n%d seeds, %d pixels: largest error in %% (median, worst seed), rms error in %%\n",
+              machine_line().c_str(), options.trials, options.pixels);
   for (const int bits : {8, 12, 14}) {
+    if (options.bits != 0 && bits != options.bits) continue;
     for (const CurvedResponse& truth : {straight(), compressive(0.3), srgb_response(), gamma_response(2.2)})
       print_row(bits, truth, options);
   }
