@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "drivers/error.h"
 #include "processing/image/response_spline.h"
@@ -14,14 +15,18 @@ namespace {
 using Vector = ResponseSpline::Vector;
 using Matrix = Eigen::Matrix<double, ResponseSpline::kCoefficients, ResponseSpline::kCoefficients>;
 
-constexpr int kMostPixels = 40'000, kFewestPixels = 200, kMostIterations = 40;
-constexpr int kCandidates = 200'000;
-constexpr int kByObservation = 12;    // iterations in which the samples choose themselves, until the curve can
-constexpr int kByModel = 4;           // then the curve chooses them so often; then the choice stays
-constexpr double kClearSigmas = 4.0;  // of a prediction from clipping
-constexpr double kDimmest = 25.0;     // electrons: below, a curve bends within the shot noise and the mean code is not F(mean)
+constexpr int kMostPixels = 160'000, kFewestPixels = 200, kMostIterations = 40;
+constexpr int kCandidates = 600'000;
+constexpr int kSettling = 6;                // iterations that choose samples and measure the shot noise; then both stay
+constexpr double kShotDominates = 1.0;      // over all other variance
+constexpr double kFewestFreedoms = 1000.0;  // to measure shot noise to 5 %
+constexpr double kCertainSigmas = 5.0;      // a censored sample expected so far above the bound tells nothing
+constexpr double kDimmest = 12.0;           // electrons: below, more than the second derivative bends the mean code
+constexpr double kSmooth = 400.0;           // electrons: from here on a curve is a parabola within the shot noise
+constexpr double kFewestElectrons =
+    600.0;  // of a pixel: each rate is fitted as well, which bends the curve by some 1 / this
 constexpr double kOutlierSigmas = 6.0;
-constexpr double kBendSigma = 3.0;    // prior on second differences of the log slope: a decade is 2.3
+constexpr double kBendSigma = 0.06;  // prior on second differences of the log slope: sRGB's kink is about twice that
 constexpr double kConverged = 0.01;
 constexpr double kWorstRelativeSigma = 0.05;
 constexpr int kPoints = 65;
@@ -29,6 +34,7 @@ constexpr double kReference = 0.5;
 
 struct Sample {
   double u, time_s;
+  bool censored;  // not below the bound: only that is known
   bool counts;
 };
 struct Pixel {
@@ -36,10 +42,10 @@ struct Pixel {
   double rate;                  // linear value in units of the range, per second
 };
 
-struct Scaled {  // the sensor in units of its range
-  double range_dn, usable, shot, reads;
+struct Scaled {                          // the sensor in units of its range
+  double range_dn, usable, shot, reads;  // usable: the lower edge of the least censored code
   explicit Scaled(const LinearSensor& sensor) : range_dn(sensor.clip_dn - sensor.black_level_dn) {
-    usable = (sensor.usable_below_dn() - sensor.black_level_dn) / range_dn;
+    usable = (std::ceil(sensor.usable_below_dn()) - 0.5 - sensor.black_level_dn) / range_dn;
     shot = 1.0 / (sensor.electrons_per_dn * range_dn);
     reads = sensor.variance_dn2(0.0) / (range_dn * range_dn);
   }
@@ -66,9 +72,9 @@ Pixel pixel_of(const std::vector<Frame>& bracket, std::size_t i, const LinearSen
   double sum = 0.0, time_s = 0.0;
   for (const Frame& frame : bracket) {
     const double u = (frame.samples[i] - sensor.black_level_dn) / scaled.range_dn;
-    const bool counts = u < scaled.usable;
-    pixel.samples.push_back({u, frame.reported.exposure_s, counts});
-    if (!counts) continue;
+    const bool censored = u >= scaled.usable;
+    pixel.samples.push_back({u, frame.reported.exposure_s, censored, !censored});
+    if (censored) continue;
     sum += u;
     time_s += frame.reported.exposure_s;
   }
@@ -108,6 +114,7 @@ struct Reduced {
   Vector right = Vector::Zero();
   double chi_square = 0, samples = 0, lowest = 1, highest = 0;
   int pixels = 0;
+  double shot_chi_square = 0, shot_freedoms = 0;  // of pixels whose noise is shot noise before all
 };
 
 // A sample about the curve's prediction.
@@ -115,10 +122,21 @@ struct Linearised {
   double residual, weight, by_rate, predicted, slope;
 };
 
+struct ShotNoise {
+  double bend, variance;  // of the code
+};
+
+// Density over distribution of the standard normal.
+double log_cdf_slope(double a) {
+  if (a < -30.0) return -a;
+  const double density = std::exp(-0.5 * a * a) / std::sqrt(2.0 * std::numbers::pi);
+  return density / (0.5 * std::erfc(-a / std::numbers::sqrt2));
+}
+
 // How much the spline bends, squared: a quadratic form of its coefficients.
 Matrix bends() {
   Matrix sum = Matrix::Zero();
-  for (int k = 0; k + 2 < ResponseSpline::kSplines; ++k) {
+  for (int k = 0; k + 2 < ResponseSpline::kCoefficients; ++k) {
     Vector second = Vector::Zero();
     second[k] = second[k + 2] = 1.0;
     second[k + 1] = -2.0;
@@ -128,11 +146,7 @@ Matrix bends() {
 }
 Matrix prior() { return bends() / (kBendSigma * kBendSigma); }
 // What changes the curve's scale and nothing else.
-Vector scale_direction() {
-  Vector direction = Vector::Ones();
-  direction[ResponseSpline::kSplines] = 0.0;
-  return direction;
-}
+Vector scale_direction() { return Vector::Ones(); }
 
 // See Fit::start. Basis: log u and splines over the square root of u.
 Vector starting_curve(const std::vector<Pixel>& pixels, const Scaled& sensor) {
@@ -174,8 +188,8 @@ Vector starting_curve(const std::vector<Pixel>& pixels, const Scaled& sensor) {
   // From log L to log slope, and that to the spline.
   Matrix fit_normal = 0.1 * bends() + 1e-9 * Matrix::Identity();
   Vector fit_right = Vector::Zero();
-  for (int i = 5; i <= 100; ++i) {
-    const double u = std::pow(0.01 * i, 2), delta = 1e-3 * u;
+  for (int i = 1; i <= 100; ++i) {
+    const double u = ResponseSpline::at_place(0.01 * i), delta = 1e-3 * u;
     if (u < lowest) continue;
     const double below = solution.dot(terms(u - delta)), above = solution.dot(terms(std::min(u + delta, 1.0)));
     const double steepness = std::max((above - below) / (std::min(u + delta, 1.0) - u + delta), 0.1 / u);
@@ -194,17 +208,15 @@ class Fit {
 
   int run() {
     start();
-    bool choosing = false;
-    int choices = 0;
     for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
       const ResponseSpline curve(coefficients_);
       for (Pixel& pixel : pixels_) {
         improve_rate(curve, pixel);
-        if (choosing && choices < kByModel) choose(curve, pixel);
+        if (iteration <= kSettling) choose(curve, pixel);
       }
-      if (choosing) ++choices;
       reduced_ = Reduced{};
       for (const Pixel& pixel : pixels_) add(curve, pixel);
+      if (iteration <= kSettling) measure_shot_noise();
       if (reduced_.pixels < kFewestPixels) return 0;
       const Vector slope = reduced_.right - prior() * coefficients_;
       Vector step = regular().ldlt().solve(slope);
@@ -213,15 +225,15 @@ class Fit {
       coefficients_ += step;
       fix_scale();
       // In units of chi-square: a coefficient that the samples do not know may move on for ever.
-      const bool converged = slope.dot(step) < kConverged;
-      if (converged && choices >= kByModel) return iteration;
-      choosing = choosing || converged || iteration >= kByObservation;
+      if (slope.dot(step) < kConverged && iteration > kSettling) return iteration;
     }
     return 0;
   }
 
   const Vector& coefficients() const { return coefficients_; }
   const Reduced& reduced() const { return reduced_; }
+  double shot() const { return sensor_.shot; }
+  bool shot_measured() const { return shot_measured_; }
   Matrix covariance() const { return regular().inverse(); }
 
  private:
@@ -229,6 +241,12 @@ class Fit {
   Matrix regular() const {
     return reduced_.normal + prior() +
            (reduced_.normal.trace() / 100.0 + 1.0) * scale_direction() * scale_direction().transpose();
+  }
+
+  // electrons_per_dn is that of a linear sensor. What a unit of the linear value is here, only the residuals know.
+  void measure_shot_noise() {
+    shot_measured_ = reduced_.shot_freedoms > kFewestFreedoms;
+    if (shot_measured_) sensor_.shot *= std::clamp(reduced_.shot_chi_square / reduced_.shot_freedoms, 0.5, 2.0);
   }
 
   void fix_scale() {
@@ -254,24 +272,62 @@ class Fit {
     fix_scale();
   }
 
+  // What shot noise makes of the code at `light`, the code of the mean known. A curve that bends within the noise moves
+  // the mean code away from it: by the second derivative, and below kSmooth by Gauss and Hermite's rule, for curves
+  // have kinks.
+  ShotNoise shot_noise(const ResponseSpline& curve, double light, double code, double slope) const {
+    const double variance = sensor_.shot * std::max(light, 0.0);
+    const double spread = variance / (slope * slope);
+    if (light > kSmooth * sensor_.shot || light < 0.5 * kDimmest * sensor_.shot)
+      return {-0.5 * curve.log_slope_slope(code) * spread, spread};
+    double mean = 0.0, square = 0.0;
+    for (const auto& [sigmas, weight] : {std::pair{1.35562618, 0.22207592}, {2.85697001, 0.01125741}}) {
+      for (const double sign : {-1.0, 1.0}) {
+        const double off = curve.inverse(light + sign * sigmas * std::sqrt(variance)) - code;
+        mean += weight * off;
+        square += weight * off * off;
+      }
+    }
+    return {mean, square - mean * mean};
+  }
+
   Linearised linearised(const ResponseSpline& curve, const Sample& sample, double rate) const {
     const double light = rate * sample.time_s;
     Linearised at;
     at.predicted = curve.inverse(light);
-    const double slope = curve.slope(at.predicted);
-    at.residual = sample.u - at.predicted;
-    at.weight = 1.0 / (sensor_.reads + sensor_.shot * std::max(light, 0.0) / (slope * slope));
-    at.by_rate = sample.time_s / slope;
-    at.slope = slope;
+    at.slope = curve.slope(at.predicted);
+    at.by_rate = sample.time_s / at.slope;
+    const auto [bend, spread] = shot_noise(curve, light, at.predicted, at.slope);
+    const double variance = sensor_.reads + spread;
+    if (!sample.censored) {
+      at.residual = sample.u - at.predicted - bend;
+      at.weight = 1.0 / variance;
+      return at;
+    }
+    const double a = (at.predicted + bend - sensor_.usable) / std::sqrt(variance), h = log_cdf_slope(a);
+    at.weight = a < kCertainSigmas ? h * (h + a) / variance : 0.0;
+    at.residual = std::sqrt(variance) / (h + a);
     return at;
   }
 
+  // By what the pixel's other samples predict: a choice in which a sample's own noise has a say prefers one sign of it.
   void choose(const ResponseSpline& curve, Pixel& pixel) const {
-    for (Sample& sample : pixel.samples) {
+    double normal = 0.0, right = 0.0;
+    std::vector<double> normals, rights;
+    for (const Sample& sample : pixel.samples) {
       const Linearised at = linearised(curve, sample, pixel.rate);
-      const double light = pixel.rate * sample.time_s;
-      sample.counts = light > kDimmest * sensor_.shot && at.predicted < sensor_.usable - kClearSigmas / std::sqrt(at.weight) &&
-                      at.residual * at.residual * at.weight < kOutlierSigmas * kOutlierSigmas;
+      normals.push_back(sample.counts ? at.weight * at.by_rate * at.by_rate : 0.0);
+      rights.push_back(sample.counts ? at.weight * at.by_rate * at.residual : 0.0);
+      normal += normals.back();
+      right += rights.back();
+    }
+    for (std::size_t k = 0; k < pixel.samples.size(); ++k) {
+      Sample& sample = pixel.samples[k];
+      const double others = normal - normals[k];
+      const double rate = others > 1e-9 * normal ? pixel.rate + (right - rights[k]) / others : pixel.rate;
+      const Linearised at = linearised(curve, sample, pixel.rate);
+      const bool fits = sample.censored || at.residual * at.residual * at.weight < kOutlierSigmas * kOutlierSigmas;
+      sample.counts = rate * sample.time_s > kDimmest * sensor_.shot && fits;
     }
   }
 
@@ -292,7 +348,8 @@ class Fit {
     Matrix own = Matrix::Zero();
     Vector right = Vector::Zero(), mixed = Vector::Zero();
     double normal = 0.0, rate_right = 0.0, chi_square = 0.0;
-    int count = 0;
+    int count = 0, seen = 0;
+    bool mostly_shot = true;
     for (const Sample& sample : pixel.samples) {
       if (!sample.counts) continue;
       const Linearised at = linearised(curve, sample, pixel.rate);
@@ -302,16 +359,24 @@ class Fit {
       mixed += at.weight * at.by_rate * by_curve;
       normal += at.weight * at.by_rate * at.by_rate;
       rate_right += at.weight * at.by_rate * at.residual;
-      chi_square += at.weight * at.residual * at.residual;
-      reduced_.lowest = std::min(reduced_.lowest, at.predicted);
-      reduced_.highest = std::max(reduced_.highest, at.predicted);
+      if (!sample.censored) chi_square += at.weight * at.residual * at.residual;
+      if (!sample.censored) {
+        reduced_.lowest = std::min(reduced_.lowest, at.predicted);
+        reduced_.highest = std::max(reduced_.highest, std::min(at.predicted, sensor_.usable));
+        mostly_shot = mostly_shot && at.weight * sensor_.reads * (1.0 + kShotDominates) < 1.0;
+        ++seen;
+      }
       ++count;
     }
-    if (count < 2) return;
+    if (count < 2 || seen == 0 || normal * pixel.rate * pixel.rate < kFewestElectrons) return;
     reduced_.normal += own - mixed * mixed.transpose() / normal;
     reduced_.right += right - mixed * (rate_right / normal);
     reduced_.chi_square += chi_square;
-    reduced_.samples += count;
+    reduced_.samples += seen;
+    if (mostly_shot && seen == count) {
+      reduced_.shot_chi_square += chi_square;
+      reduced_.shot_freedoms += seen - 1;
+    }
     ++reduced_.pixels;
   }
 
@@ -319,6 +384,7 @@ class Fit {
   Scaled sensor_;
   Vector coefficients_;
   Reduced reduced_;
+  bool shot_measured_ = false;
 };
 
 // Of chi-square with n degrees of freedom, exceeded with 1 %, by Wilson and Hilferty.
@@ -346,7 +412,8 @@ void state_points(const Fit& fit, const LinearSensor& sensor, const Scaled& scal
   for (const ResponsePoint& point : result.points) {
     const double straight = (point.code_dn - sensor.black_level_dn) * std::exp(sum / weights);
     const double departure = std::abs(point.linear_dn / straight - 1.0);
-    if (departure > 2.0 * point.relative_sigma) result.largest_departure = std::max(result.largest_departure, departure);
+    if (departure > 2.0 * point.relative_sigma)
+      result.largest_departure = std::max(result.largest_departure, departure);
   }
 }
 
@@ -355,7 +422,7 @@ ResponseCurve tabulated(const Fit& fit, const LinearSensor& sensor, const Scaled
   const ResponseSpline curve(fit.coefficients());
   std::vector<double> codes, linears;
   for (int i = 0; i <= kNodes; ++i) {
-    const double u = std::pow(static_cast<double>(i) / kNodes, 2);
+    const double u = ResponseSpline::at_place(static_cast<double>(i) / kNodes);
     codes.push_back(sensor.black_level_dn + u * scaled.range_dn);
     linears.push_back(curve.linear(u) * scaled.range_dn);
   }
@@ -379,7 +446,10 @@ ResponseFit fit_response(const std::vector<std::vector<Frame>>& brackets, const 
   const Reduced& reduced = fit.reduced();
   const double freedoms = reduced.samples - reduced.pixels - ResponseSpline::kCoefficients + 1;
   result.residual_scale = std::sqrt(reduced.chi_square / std::max(1.0, freedoms));
-  result.freedoms = ResponseSpline::kCoefficients - 1;
+  result.electrons_per_dn = 1.0 / (fit.shot() * scaled.range_dn);
+  result.electrons_measured = fit.shot_measured();
+  const Matrix known = fit.covariance() * reduced.normal;  // the prior keeps the rest from moving at all
+  result.freedoms = std::max(1, static_cast<int>(std::lround((known * known).trace())));
   result.chi_square = fit.coefficients().dot(reduced.normal * fit.coefficients()) /
                       std::max(1.0, result.residual_scale * result.residual_scale);
   state_points(fit, sensor, scaled, result);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "processing/image/fit_response.h"
 #include "processing/image/linear_sensor.h"
 
 namespace lumitexel {
@@ -22,7 +23,8 @@ inline CurvedResponse straight() {
   return {"linear", [](double x) { return x; }, [](double u) { return u; }};
 }
 inline CurvedResponse gamma_response(double gamma) {
-  return {"gamma " + std::to_string(gamma).substr(0, 4), [gamma](double x) { return std::pow(std::max(x, 0.0), 1.0 / gamma); },
+  return {"gamma " + std::to_string(gamma).substr(0, 4),
+          [gamma](double x) { return std::pow(std::max(x, 0.0), 1.0 / gamma); },
           [gamma](double u) { return std::pow(std::max(u, 0.0), gamma); }};
 }
 inline CurvedResponse srgb_response() {
@@ -31,21 +33,25 @@ inline CurvedResponse srgb_response() {
 }
 // A well that fills more slowly the fuller it is: k of the slope is lost at the end.
 inline CurvedResponse compressive(double k) {
-  return {"compressive " + std::to_string(k).substr(0, 4), [k](double x) { return (1.0 + 0.5 * k) * x / (1.0 + 0.5 * k * x); },
+  return {"compressive " + std::to_string(k).substr(0, 4),
+          [k](double x) { return (1.0 + 0.5 * k) * x / (1.0 + 0.5 * k * x); },
           [k](double u) { return u / (1.0 + 0.5 * k - 0.5 * k * u); }};
 }
 
 // sensor: noise in codes; shot noise of electrons_per_dn * (clip - black) electrons at the range's end.
 inline std::vector<Frame> curved_bracket(const CurvedResponse& response, const LinearSensor& sensor, int bits,
-                                         const std::vector<double>& exposures_s, std::uint64_t seed, int pixels = 40'000) {
+                                         const std::vector<double>& exposures_s, std::uint64_t seed,
+                                         int pixels = 40'000, std::vector<double>* true_rates = nullptr) {
   std::mt19937_64 random(seed);
   const double range_dn = sensor.clip_dn - sensor.black_level_dn, top = std::ldexp(1.0, bits) - 1.0;
   std::uniform_real_distribution<double> decades(-3.5, 0.6);
   std::normal_distribution<double> normal;
   double middle_s = 1.0;
-  for (const double exposure_s : exposures_s) middle_s *= std::pow(exposure_s, 1.0 / static_cast<double>(exposures_s.size()));
+  for (const double exposure_s : exposures_s)
+    middle_s *= std::pow(exposure_s, 1.0 / static_cast<double>(exposures_s.size()));
   std::vector<double> rates;
   for (int i = 0; i < pixels; ++i) rates.push_back(std::pow(10.0, decades(random)) / middle_s);
+  if (true_rates) *true_rates = rates;  // in units of the range, per second
   std::vector<Frame> frames;
   for (const double exposure_s : exposures_s) {
     Frame frame;
@@ -56,7 +62,8 @@ inline std::vector<Frame> curved_bracket(const CurvedResponse& response, const L
     for (const double rate : rates) {
       const double electrons = rate * exposure_s * sensor.electrons_per_dn * range_dn;
       const double light = (electrons + std::sqrt(electrons) * normal(random)) / (sensor.electrons_per_dn * range_dn);
-      const double code = sensor.black_level_dn + range_dn * response.code(std::clamp(light, 0.0, 1.0)) + sensor.read_noise_dn * normal(random);
+      const double code = sensor.black_level_dn + range_dn * response.code(std::clamp(light, 0.0, 1.0)) +
+                          sensor.read_noise_dn * normal(random);
       frame.samples.push_back(static_cast<std::uint16_t>(std::clamp(std::round(code), 0.0, top)));
     }
     frames.push_back(std::move(frame));
@@ -72,6 +79,28 @@ inline LinearSensor sensor_of_bits(int bits) {
   sensor.read_noise_dn = bits == 8 ? 0.3 : 4.0 / sensor.electrons_per_dn;
   sensor.clip_dn = top;
   return sensor;
+}
+
+// Errors of `linear`, from code in units of the range to light at any scale, all along the usable range.
+template <typename Linear>
+std::vector<double> relative_errors(const CurvedResponse& truth, const LinearSensor& sensor, const Linear& linear) {
+  const double scale = truth.light(0.5) / linear(0.5);
+  const double electrons = sensor.electrons_per_dn * (sensor.clip_dn - sensor.black_level_dn);
+  const double from = std::max(kUsableFrom, truth.code(kUsableElectrons / electrons));
+  std::vector<double> errors;
+  for (int i = 0; i <= 400; ++i) {
+    const double u = from + (kUsableTo - from) * std::pow(i / 400.0, 2);  // as the knots lie: more of the dim end
+    errors.push_back(linear(u) * scale / truth.light(u) - 1.0);
+  }
+  return errors;
+}
+
+// A sensor that got no curve is taken for linear.
+inline std::vector<double> response_errors(const ResponseFit& fit, const CurvedResponse& truth,
+                                           const LinearSensor& sensor) {
+  return relative_errors(truth, sensor, [&](double u) {
+    return fit.curve ? fit.curve->linear_dn(sensor.black_level_dn + u * (sensor.clip_dn - sensor.black_level_dn)) : u;
+  });
 }
 
 }  // namespace lumitexel

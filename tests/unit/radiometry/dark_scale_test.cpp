@@ -114,8 +114,8 @@ TEST(DarkScale, BeatsPlainSubtractionWhenTheSensorWarmedBy5K) {
 TEST(DarkScale, KeepsOneWhenNothingDrifted) {
   const Image radiance = scene();
   int kept = 0;
-  for (std::uint64_t seed = 1; seed <= 100; ++seed) kept += trial(0.0, seed, radiance).fitted.needed ? 0 : 1;
-  EXPECT_GE(kept, 95);
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) kept += trial(0.0, seed, radiance).fitted.needed ? 0 : 1;
+  EXPECT_GE(kept, 47);  // 1 % each err: four or more have a chance of 0.2 %
 }
 
 TEST(DarkScale, SaysWhenTheFrameCannotTell) {

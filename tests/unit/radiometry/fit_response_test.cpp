@@ -12,57 +12,54 @@
 namespace lumitexel {
 namespace {
 
-const std::vector<double> kExposures_s{0.004, 0.016, 0.064, 0.256};
-// The usable range: 2 to 95 % of the codes, and from 50 electrons on (below, a steep curve bends within the shot noise).
-constexpr double kFromCode = 0.02, kToCode = 0.95, kFromLight = 50.0 / 18000.0;
+const std::vector<double> kExposures_s{0.004, 0.012, 0.060, 0.252};
 
-double largest_error(const ResponseCurve& curve, const CurvedResponse& truth, const LinearSensor& sensor) {
-  const double range_dn = sensor.clip_dn - sensor.black_level_dn;
-  const double scale = 0.5 / truth.light(0.5);
+// Errors over all of the usable range, the worst of the seeds. tests/bench/response_table does more of them.
+void expect_half_a_percent(const CurvedResponse& truth, int bits, int seeds, int pixels) {
+  const LinearSensor sensor = sensor_of_bits(bits);
   double worst = 0.0;
-  for (double u = std::max(kFromCode, truth.code(kFromLight)); u <= kToCode; u += 0.005) {
-    const double found = curve.linear_dn(sensor.black_level_dn + u * range_dn) / range_dn;
-    worst = std::max(worst, std::abs(found / (scale * truth.light(u)) - 1.0));
-  }
-  return worst;
-}
-
-void expect_half_a_percent(const std::vector<CurvedResponse>& truths, const std::vector<int>& depths) {
-  for (const int bits : depths) {
-    for (const CurvedResponse& truth : truths) {
-      const LinearSensor sensor = sensor_of_bits(bits);
-      double worst = 0.0;
-      for (std::uint64_t seed = 1; seed <= 1; ++seed) {
-        const ResponseFit fit = fit_response({curved_bracket(truth, sensor, bits, kExposures_s, seed, 40'000)}, sensor);
-        ASSERT_TRUE(fit.curve) << truth.name << bits << fit.why;
-        worst = std::max(worst, largest_error(*fit.curve, truth, sensor));
-      }
-      std::printf("%2d bits %-16s largest error %.5f\n", bits, truth.name.c_str(), worst);
-      EXPECT_LT(worst, 0.005) << truth.name << bits;
+  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds); ++seed) {
+    const ResponseFit fit = fit_response({curved_bracket(truth, sensor, bits, kExposures_s, seed, pixels)}, sensor);
+    ASSERT_TRUE(fit.curve) << truth.name << bits << fit.why;
+    for (const double error : response_errors(fit, truth, sensor)) worst = std::max(worst, std::abs(error));
+    // The scale is fixed at half the range, so a unit of linear_dn has fewer electrons where the curve is steeper
+    // above.
+    const double electrons_per_dn = sensor.electrons_per_dn * truth.light(0.5) / 0.5;
+    EXPECT_TRUE(fit.electrons_measured || bits == 8);  // rounding to 8 bits may hide shot noise
+    if (fit.electrons_measured) {
+      EXPECT_NEAR(fit.electrons_per_dn / electrons_per_dn, 1.0, 0.05) << truth.name << bits;
     }
   }
+  std::printf("%2d bits %-16s largest error %.5f\n", bits, truth.name.c_str(), worst);
+  EXPECT_LT(worst, 0.005) << truth.name << bits;
 }
 
-TEST(FitResponse, IsWithinHalfAPercentForACompressiveSensor) { expect_half_a_percent({compressive(0.3)}, {8}); }
-
-// Not reached: 0.6 to 0.75 % at the dim end with gamma 2.2 and sRGB, and no convergence with sRGB at 14 bits.
-TEST(FitResponse, DISABLED_IsWithinHalfAPercentForGammaCurves) {
-  expect_half_a_percent({gamma_response(2.2), srgb_response()}, {8, 12, 14});
+TEST(FitResponse, IsWithinHalfAPercentForACompressiveSensor) {
+  for (const int bits : {8, 14}) expect_half_a_percent(compressive(0.3), bits, 1, 40'000);
+}
+TEST(FitResponse, IsWithinHalfAPercentForGamma) {
+  for (const int bits : {8, 14}) expect_half_a_percent(gamma_response(2.2), bits, 1, 40'000);
+}
+// Not reached: the kink, at 56 electrons, is rounded; see fit_response.h.
+TEST(FitResponse, DISABLED_IsWithinHalfAPercentForSrgb) {
+  for (const int bits : {8, 12, 14}) expect_half_a_percent(srgb_response(), bits, 1, 160'000);
 }
 
 TEST(FitResponse, FindsALinearSensorLinear) {
+  constexpr int kSeeds = 50;
   for (const int bits : {14}) {
     const LinearSensor sensor = sensor_of_bits(bits);
     int curves = 0;
     double chi_square = 0.0;
-    for (std::uint64_t seed = 1; seed <= 100; ++seed) {
-      const ResponseFit fit = fit_response({curved_bracket(straight(), sensor, bits, kExposures_s, seed, 1000)}, sensor);
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+      const ResponseFit fit =
+          fit_response({curved_bracket(straight(), sensor, bits, kExposures_s, seed, 1000)}, sensor);
       ASSERT_TRUE(fit.determined);
       curves += fit.curve ? 1 : 0;
-      chi_square += fit.chi_square / fit.freedoms / 100.0;
+      chi_square += fit.chi_square / fit.freedoms / kSeeds;
     }
-    std::printf("%2d bits: %d of 100 linear sensors got a curve; mean chi2/n %.3f\n", bits, curves, chi_square);
-    EXPECT_LE(curves, 5) << bits;
+    std::printf("%2d bits: %d of %d linear sensors got a curve; mean chi2/n %.3f\n", bits, curves, kSeeds, chi_square);
+    EXPECT_LE(curves, 3) << bits;  // 1 % each: four or more have a chance of 0.2 %
   }
 }
 
