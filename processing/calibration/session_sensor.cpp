@@ -66,7 +66,11 @@ RadianceReader measure_sensor(const CapturedFrames& frames, const CapturedInputs
   // The response first: a curve looks like noise to a photon transfer that takes the sensor for linear.
   if (options.takes(CalibrationStep::Response) && !brackets.empty()) {
     ResponseFit response = fit_response(brackets, model.sensor);
-    if (response.largest_departure > kLampBends) model.response = std::move(response.curve);
+    if (response.curve && response.largest_departure > kLampBends) {
+      // A linearised sample has a unit of its own, half the range being its fixed point, and so its own gain.
+      if (response.electrons_measured) model.sensor.electrons_per_dn = response.electrons_per_dn;
+      model.response = std::move(response.curve);
+    }
     if (model.response) summary.sensor.notes.emplace_back("the sensor is not linear: a response curve is undone");
   }
   if (options.takes(CalibrationStep::PhotonTransfer) && !model.response) {

@@ -28,9 +28,7 @@ const std::map<std::string, std::string>& captions() {
       {"lens_coverage.png",
        "Where the board's corners were seen; arrows are what the lens model does not explain, magnified; shaded cells "
        "had no corner."},
-      {"vignetting.png", "The lens's transmission over the picture; a contour every 5 %."},
-      {"silhouette.png",
-       "The view whose outline fits worst: the mesh's outline (orange) over the backlit photograph."}};
+      {"vignetting.png", "The lens's transmission over the picture; a contour every 5 %."}};
   return texts;
 }
 
@@ -81,7 +79,7 @@ std::string sensor_section(const SensorSummary& sensor, std::int64_t hot_pixels)
                        html::table({"", "value", "sigma"}, rows) + html::table({"", ""}, darks) + notes_list(sensor.notes));
 }
 
-std::string views_section(const CalibrationSummary& summary, const std::filesystem::path& folder) {
+std::string views_section(const CalibrationSummary& summary) {
   Rows rows;
   for (std::size_t v = 0; v < summary.lights.size(); ++v) {
     const LightSummary& light = summary.lights[v];
@@ -103,7 +101,7 @@ std::string views_section(const CalibrationSummary& summary, const std::filesyst
           html::table({"view", "silhouette, px", "pose, mm", "pose, °", "tags", "mostly from", "light, mm", "highlights",
                        "light from", "lamp", "sigma"},
                       rows) +
-          "</div>" + pictures_markup(summary, folder, {"silhouette.png"}));
+          "</div>");
 }
 
 std::string scale_section(const CalibrationSummary& summary) {
@@ -138,7 +136,7 @@ std::string calibration_report(const CalibratedSession& session, const Calibrati
                                const std::string& data_json) {
   std::string body = "<header><h1>Calibration</h1><p>" + std::to_string(session.views.size()) +
                      " views. Every sigma is one standard deviation; a dash means: not measured.</p></header>";
-  if (!session.views.empty()) body += views_section(summary, pictures);
+  if (!session.views.empty()) body += views_section(summary);
   if (!summary.intensity.empty()) body += scale_section(summary);
   if (!summary.lens.params.empty()) body += lens_section(summary, pictures);
   if (summary.sensor.electrons_per_dn > 0) body += sensor_section(summary.sensor, summary.hot_pixels);
