@@ -9,6 +9,7 @@
 #include "processing/calibration/calibrated_views_file.h"
 #include "processing/calibration/captured_inputs.h"
 #include "processing/calibration/light/sphere_shots.h"
+#include "processing/calibration/pose/joint_refinement.h"
 #include "processing/calibration/pose/object_mask.h"
 #include "processing/calibration/session_card.h"
 #include "processing/calibration/session_lamp.h"
@@ -92,11 +93,43 @@ class SessionCalibration {
     return timed;
   }
 
+  // Of a light's place in the world, per axis: its own, what all lights share, and what its view's pose adds. Fills in the
+  // lights' shares.
+  std::vector<double> light_sigmas(const SessionLights& lights) {
+    const double shared2 = lights.shared_sigma_m * lights.shared_sigma_m;
+    const Eigen::Matrix3d turn = in_.rig.camera.camera_from_rig.linear();
+    std::vector<LightInCamera> in_camera;
+    double own2 = 0.0;
+    for (std::size_t v = 0; v < records_.size(); ++v) {
+      const ArmPrediction& light = lights.in_rig[v];
+      in_camera.push_back({v, in_.rig.camera.camera_from_rig * light.position_in_rig,
+                           turn * light.covariance * turn.transpose() + shared2 * Eigen::Matrix3d::Identity()});
+      own2 += light.covariance.trace() / 3.0 / static_cast<double>(records_.size());
+    }
+    std::vector<double> sigmas;
+    double pose2 = 0.0;
+    if (poses_.registration) {
+      for (const LightInMesh& light : lights_in_mesh(*poses_.registration, in_camera)) {
+        sigmas.push_back(per_axis_sigma(light.covariance));
+        pose2 += light.pose_share * light.covariance.trace() / 3.0 / static_cast<double>(records_.size());
+      }
+    } else {
+      for (const LightInCamera& light : in_camera) sigmas.push_back(per_axis_sigma(light.covariance));
+    }
+    const double total = own2 + shared2 + pose2;
+    summary_.shares.push_back({"light positions", "highlights and arm", own2 / total});
+    summary_.shares.push_back({"light positions", "sphere line", shared2 / total});
+    summary_.shares.push_back({"light positions", "poses", pose2 / total});
+    return sigmas;
+  }
+
   // Cameras, poses and lights; intensities follow once all photographs have shown the card.
   void make_views(const SessionLights& lights) {
+    const std::vector<double> sigmas = light_sigmas(lights);
     for (std::size_t v = 0; v < records_.size(); ++v) {
       const Eigen::Isometry3d world_from_rig = rig_from_world(v).inverse();
       LightSummary light = lights.summaries[v];
+      light.sigma_m = sigmas[v];
       light.position_in_world = world_from_rig * light.position_in_world;
       if (light.spheres_alone_sigma_m > 0) light.spheres_alone_in_world = world_from_rig * light.spheres_alone_in_world;
       View& view = calibrated_.views.emplace_back();

@@ -115,10 +115,10 @@ bool contradicts(const TurntableRegistration& result, const std::vector<Eigen::I
 SessionPoses measure_poses(const CapturedInputs& in, const std::vector<ViewFrames>& views, const RadianceReader& reader,
                            const SessionLens& lens, const std::vector<std::vector<DetectedTag>>& tags,
                            const CalibrationOptions& options, CalibrationSummary& summary, Progress& progress) {
-  SessionPoses poses{nominal_poses(in, views), false};
+  SessionPoses poses{nominal_poses(in, views), std::nullopt, false};
   for (const PlannedView& view : in.plan.views) summary.poses.emplace_back().view = view.name;
   if (!options.takes(CalibrationStep::Pose)) return poses;
-  const TurntableRegistration result = register_session(in, views, reader, lens, tags, progress);
+  TurntableRegistration result = register_session(in, views, reader, lens, tags, progress);
   if (!result.converged || result.ambiguous()) {
     summary.pose_problem = result.problem;
     return poses;
@@ -133,6 +133,7 @@ SessionPoses measure_poses(const CapturedInputs& in, const std::vector<ViewFrame
       summary.poses[v].source = "rig description, confirmed";
     }
   }
+  poses.registration = std::move(result);
   return poses;
 }
 

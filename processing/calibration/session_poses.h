@@ -2,12 +2,14 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <vector>
 
 #include "processing/calibration/calibration_options.h"
 #include "processing/calibration/calibration_summary.h"
 #include "processing/calibration/captured_inputs.h"
 #include "processing/calibration/lens/tag_detection.h"
+#include "processing/calibration/pose/register_turntable.h"
 #include "processing/calibration/radiance_reader.h"
 #include "processing/calibration/session_lens.h"
 #include "rig/progress.h"
@@ -16,6 +18,7 @@ namespace lumitexel {
 
 struct SessionPoses {
   std::vector<Eigen::Isometry3d> camera_from_world;  // by view; world: the mesh's frame
+  std::optional<TurntableRegistration> registration;  // empty if it was not tried or did not come to an end
   bool registered = false;  // false: as the rig's description has it, and nobody knows how well that is
 };
 
