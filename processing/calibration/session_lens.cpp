@@ -42,7 +42,9 @@ void describe(const LensCalibration& calibration, LensSummary& lens) {
     lens.notes.emplace_back("boards: " + calibration.refusal);
     return;
   }
-  lens.source = "boards of this session";
+  lens.source = "boards of this session";  // in place of a lens calibrated before, if that was taken
+  lens.boards = 0;
+  lens.sigma.clear();
   lens.reprojection_px = calibration.rms_px;
   for (int i = 0; i < kLensParameters; ++i) lens.sigma.push_back(std::sqrt(calibration.covariance(i, i)));
   for (const BoardFit& board : calibration.boards) lens.boards += board.rejected.empty();
