@@ -17,7 +17,7 @@ Eigen::Array3d schlick(const Eigen::Array3d& f0, double cosine) {
 Eigen::Array3d evaluate(const GgxBrdf& brdf, const LobeGeometry& geometry, double albedo_scale) {
   const double cos_i = geometry.cos_i, cos_o = geometry.cos_o;
   if (!(cos_i > 0.0 && cos_o > 0.0)) return Eigen::Array3d::Zero();
-  const double half_length_sq = 2.0 + 2.0 * geometry.wi_dot_wo;  // |wi + wo|^2
+  const double half_length_sq = 2.0 + 2.0 * geometry.wi_dot_wo();  // |wi + wo|^2
   const double cos_h_sq = std::min(1.0, (cos_i + cos_o) * (cos_i + cos_o) / half_length_sq);
   const double cos_d = 0.5 * std::sqrt(half_length_sq);
   const double a2 = brdf.alpha * brdf.alpha;

@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "processing/brdf/lafortune.h"
+#include "processing/brdf/brdf.h"
 
 namespace lumitexel {
 

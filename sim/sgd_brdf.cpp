@@ -62,7 +62,7 @@ double number(const std::string& text, const std::string& where) {
 Eigen::Array3d evaluate(const SgdBrdf& brdf, const LobeGeometry& geometry, double albedo_scale) {
   const double cos_i = geometry.cos_i, cos_o = geometry.cos_o;
   if (!(cos_i > 0.0 && cos_o > 0.0)) return Eigen::Array3d::Zero();
-  const double half_length_sq = 2.0 + 2.0 * geometry.wi_dot_wo;  // |wi + wo|^2
+  const double half_length_sq = 2.0 + 2.0 * geometry.wi_dot_wo();  // |wi + wo|^2
   const double cos_h_sq = std::min(1.0, (cos_i + cos_o) * (cos_i + cos_o) / half_length_sq);
   const double tan_h_sq = (1.0 - cos_h_sq) / cos_h_sq;
   const double cos_d = std::min(1.0, 0.5 * std::sqrt(half_length_sq));

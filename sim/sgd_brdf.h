@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-#include "processing/brdf/lafortune.h"
+#include "processing/brdf/brdf.h"
 
 namespace lumitexel {
 

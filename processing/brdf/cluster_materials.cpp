@@ -3,225 +3,106 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numeric>
 
-#include "processing/brdf/misfit.h"
-#include "processing/brdf/split_directions.h"
+#include "processing/brdf/merge_materials.h"
+#include "processing/brdf/split_materials.h"
 
 namespace lumitexel {
 namespace {
 
-constexpr int kSplitRounds = 6;
-constexpr int kGlobalRounds = 12;
-constexpr double kSettled = 0.002;           // share of labels that may still move when reclustering ends
-constexpr std::size_t kFewestMembers = 20;   // a material needs as many lumitexels
-constexpr std::size_t kWorstShare = 8;       // one in so many, the worst explained, may begin a material of their own
+constexpr int kFinalRounds = 4;
+constexpr int kMostExtra = 8;  // materials beyond those wanted that splitting may make
 
-using Members = std::vector<std::size_t>;
-
-struct Split {
-  LafortuneBrdf first, second;
-  double gain = 0;  // of minus twice the log likelihood
-};
-
-class Clusterer {
- public:
-  Clusterer(const Observations& observations, const ClusterOptions& options)
-      : observations_(observations), options_(options) {}
-
-  FittedMaterial fit(const Members& members, const LafortuneBrdf* start) const {
-    std::vector<const Observation*> samples;
-    for (const std::size_t i : members) {
-      for (const Observation& sample : observations_.of(i)) samples.push_back(&sample);
-    }
-    const LobeFit fit = fit_one_lobe(samples, observations_.channels, start, options_.fit);
-    return {fit.brdf, fit.covariance, members.size()};
-  }
-
-  // Index of the BRDF that explains each of `lumitexels` best, and how badly it does.
-  void assign(const std::vector<LafortuneBrdf>& brdfs, const Members& lumitexels, std::vector<int>& label,
-              std::vector<double>& cost) const {
-    label.assign(lumitexels.size(), 0);
-    cost.assign(lumitexels.size(), 0.0);
-    oneapi::tbb::parallel_for(std::size_t{0}, lumitexels.size(), [&](std::size_t k) {
-      double best = std::numeric_limits<double>::infinity();
-      for (std::size_t j = 0; j < brdfs.size(); ++j) {
-        const double value = misfit(brdfs[j], observations_.of(lumitexels[k]), options_.fit.error);
-        if (value >= best) continue;
-        best = value;
-        label[k] = static_cast<int>(j);
-      }
-      cost[k] = std::isfinite(best) ? best : 0.0;
-    });
-  }
-
-  // Assigns and refits in turn until the labels settle; returns the final cost. Materials that lose their members vanish.
-  double recluster(std::vector<FittedMaterial>& materials, const Members& lumitexels, std::vector<int>& label, int rounds,
-                   int& rounds_used) const {
-    std::vector<double> cost;
-    std::vector<int> before;
-    for (int round = 0; round < rounds; ++round) {
-      assign(brdfs_of(materials), lumitexels, label, cost);
-      ++rounds_used;
-      if (round > 0 && moved(before, label) <= kSettled * static_cast<double>(label.size())) break;
-      before = label;
-      if (refit(materials, lumitexels, label)) before.clear();
-    }
-    assign(brdfs_of(materials), lumitexels, label, cost);
-    return std::accumulate(cost.begin(), cost.end(), 0.0);
-  }
-
-  // cost: of each member under the material as it is.
-  LafortuneBrdf fit_of_worst(const Members& members, const std::vector<double>& cost) const {
-    std::vector<std::pair<double, std::size_t>> ranked;
-    for (std::size_t k = 0; k < members.size(); ++k) {
-      const double samples = std::max<double>(1.0, static_cast<double>(observations_.of(members[k]).size()));
-      ranked.emplace_back(-cost[k] / samples, members[k]);
-    }
-    std::sort(ranked.begin(), ranked.end());
-    ranked.resize(std::max(kFewestMembers, ranked.size() / kWorstShare));
-    Members worst;
-    for (const auto& [negative_cost, lumitexel] : ranked) worst.push_back(lumitexel);
-    return fit(worst, nullptr).brdf;
-  }
-
-  Split best_split(const FittedMaterial& material, const Members& members) const {
-    Split best;
-    if (members.size() < 2 * kFewestMembers) return best;
-    std::vector<int> label;
-    std::vector<double> cost;
-    assign({material.brdf}, members, label, cost);
-    const double whole = std::accumulate(cost.begin(), cost.end(), 0.0);
-    for (const BrdfPair& pair : {split_along_covariance(material, options_.fit.shared_shape),
-                                 split_along_brightness(material, observations_, members, options_.fit.error),
-                                 BrdfPair{material.brdf, fit_of_worst(members, cost)}}) {
-      std::vector<FittedMaterial> halves{{pair.first, {}, 0}, {pair.second, {}, 0}};
-      int rounds = 0;
-      const double parted = recluster(halves, members, label, kSplitRounds, rounds);
-      if (halves.size() == 2 && whole - parted > best.gain) best = {halves[0].brdf, halves[1].brdf, whole - parted};
-    }
-    return best;
-  }
-
-  static std::vector<LafortuneBrdf> brdfs_of(const std::vector<FittedMaterial>& materials) {
-    std::vector<LafortuneBrdf> brdfs;
-    for (const FittedMaterial& material : materials) brdfs.push_back(material.brdf);
-    return brdfs;
-  }
-
-  static std::vector<Members> members_of(std::size_t materials, const Members& lumitexels, const std::vector<int>& label) {
-    std::vector<Members> members(materials);
-    for (std::size_t k = 0; k < lumitexels.size(); ++k) members[static_cast<std::size_t>(label[k])].push_back(lumitexels[k]);
-    return members;
-  }
-
- private:
-  static double moved(const std::vector<int>& before, const std::vector<int>& after) {
-    if (before.size() != after.size()) return static_cast<double>(after.size());
-    double count = 0.0;
-    for (std::size_t k = 0; k < after.size(); ++k) count += before[k] != after[k];
-    return count;
-  }
-
-  // True if a material vanished, which shifts the labels.
-  bool refit(std::vector<FittedMaterial>& materials, const Members& lumitexels, const std::vector<int>& label) const {
-    const std::vector<Members> members = members_of(materials.size(), lumitexels, label);
-    std::vector<FittedMaterial> kept(materials.size());
-    oneapi::tbb::parallel_for(std::size_t{0}, materials.size(), [&](std::size_t j) {
-      if (members[j].size() >= kFewestMembers) kept[j] = fit(members[j], &materials[j].brdf);
-    });
-    std::erase_if(kept, [](const FittedMaterial& material) { return material.members == 0; });
-    if (kept.empty()) return false;
-    const bool vanished = kept.size() != materials.size();
-    materials = std::move(kept);
-    return vanished;
-  }
-
-  const Observations& observations_;
-  const ClusterOptions& options_;
-};
-
-// Splits once where it gains most; false if no split gains.
-bool split_once(const Clusterer& clusterer, std::vector<FittedMaterial>& materials, const Members& selection,
-                const std::vector<int>& label) {
-  const std::vector<Members> members = Clusterer::members_of(materials.size(), selection, label);
-  std::size_t chosen = 0;
-  Split best;
-  for (std::size_t j = 0; j < materials.size(); ++j) {
-    const Split split = clusterer.best_split(materials[j], members[j]);
-    if (split.gain <= best.gain) continue;
-    best = split;
-    chosen = j;
-  }
-  if (best.gain <= 0.0) return false;
-  materials[chosen].brdf = best.first;
-  materials.push_back({best.second, {}, 0});
-  return true;
-}
-
-Members with_samples(const Observations& observations) {
-  Members some;
+LumitexelList with_samples(const Observations& observations) {
+  LumitexelList some;
   for (std::size_t i = 0; i < observations.lumitexels(); ++i) {
     if (!observations.of(i).empty()) some.push_back(i);
   }
   return some;
 }
 
-int largest(const std::vector<FittedMaterial>& materials) {
-  std::size_t best = 0;
-  for (std::size_t j = 1; j < materials.size(); ++j) {
-    if (materials[j].members > materials[best].members) best = j;
-  }
-  return static_cast<int>(best);
-}
-
-Members thinned(const Members& members, std::size_t most) {
-  const std::size_t stride = std::max<std::size_t>(1, (members.size() + most / 2) / most);
-  Members some;
-  for (std::size_t k = 0; k < members.size(); k += stride) some.push_back(members[k]);
+LumitexelList thinned(const LumitexelList& list, std::size_t most) {
+  const std::size_t stride = std::max<std::size_t>(1, (list.size() + most - 1) / std::max<std::size_t>(1, most));
+  LumitexelList some;
+  for (std::size_t k = 0; k < list.size(); k += stride) some.push_back(list[k]);
   return some;
 }
 
-// From the selection to every lumitexel with samples: labels them, refits each material on many of its members, labels again.
-void label_all(const Clusterer& clusterer, const Observations& observations, std::size_t most,
-               std::vector<FittedMaterial>& materials, Clustering& result) {
-  const Members all = with_samples(observations);
-  std::vector<int> label;
-  std::vector<double> cost;
-  clusterer.assign(Clusterer::brdfs_of(materials), all, label, cost);
-  const std::vector<Members> members = Clusterer::members_of(materials.size(), all, label);
-  for (std::size_t j = 0; j < materials.size(); ++j) {
-    if (members[j].size() >= kFewestMembers) materials[j] = clusterer.fit(thinned(members[j], most), &materials[j].brdf);
+std::vector<int> most_probable(const Responsibilities& r) {
+  std::vector<int> label(r.lumitexels());
+  for (std::size_t l = 0; l < label.size(); ++l) {
+    const double* begin = &r.probability[l * r.materials];
+    label[l] = static_cast<int>(std::max_element(begin, begin + r.materials) - begin);
   }
-  clusterer.assign(Clusterer::brdfs_of(materials), all, label, cost);
-  result.single = clusterer.fit(thinned(all, most), &result.single).brdf;
-  for (FittedMaterial& material : materials) material.members = 0;
-  for (const int material : label) ++materials[static_cast<std::size_t>(material)].members;
-  result.label.assign(observations.lumitexels(), largest(materials));
-  for (std::size_t k = 0; k < all.size(); ++k) result.label[all[k]] = label[k];
+  return label;
+}
+
+// About `most` members of each material, of those in `all`.
+LumitexelList members_of_all(const std::vector<int>& label, const LumitexelList& all, std::size_t materials, std::size_t most) {
+  std::vector<LumitexelList> members(materials);
+  for (std::size_t l = 0; l < all.size(); ++l) members[static_cast<std::size_t>(label[l])].push_back(all[l]);
+  LumitexelList chosen;
+  for (const LumitexelList& own : members) {
+    const LumitexelList some = thinned(own, most);
+    chosen.insert(chosen.end(), some.begin(), some.end());
+  }
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
+}
+
+// Each material's lobes, asked for anew: while splitting and merging all had those of the whole.
+void choose_lobes(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels, const Responsibilities& r,
+                  const MaterialFitOptions& options, std::vector<BrdfFit>& fits) {
+  fits.resize(mixture.materials.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, mixture.materials.size(), [&](std::size_t k) {
+    MaterialFitOptions own = options;
+    own.error = mixture.materials[k].error;
+    const auto samples = samples_of(observations, lumitexels, r, k);
+    const MaterialFit fit = fit_material(samples, observations.channels, &mixture.materials[k].brdf, own);
+    mixture.materials[k] = fit.model;
+    fits[k] = fit.fit;
+  });
+}
+
+void label_everything(const Mixture& mixture, const Observations& observations, const LumitexelList& all,
+                      const std::vector<BrdfFit>& fits, Clustering& result) {
+  const std::vector<int> label = most_probable(responsibilities(mixture, observations, all));
+  for (std::size_t k = 0; k < mixture.materials.size(); ++k) result.materials.push_back({mixture.materials[k], fits[k], 0});
+  for (const int material : label) ++result.materials[static_cast<std::size_t>(material)].members;
+  const auto largest = std::max_element(result.materials.begin(), result.materials.end(),
+                                        [](const auto& a, const auto& b) { return a.members < b.members; });
+  result.label.assign(observations.lumitexels(), static_cast<int>(largest - result.materials.begin()));
+  for (std::size_t l = 0; l < all.size(); ++l) result.label[all[l]] = label[l];
 }
 
 }  // namespace
 
-Clustering cluster_materials(const Observations& observations, const std::vector<std::size_t>& selection,
-                             const ClusterOptions& options, const std::function<void(int)>& report) {
-  const Clusterer clusterer(observations, options);
+Clustering cluster_materials(const Observations& observations, const LumitexelList& selection, const ClusterOptions& options,
+                             const std::function<void(int)>& report) {
   Clustering result;
-  std::vector<FittedMaterial> materials{clusterer.fit(selection, nullptr)};
-  result.single = materials[0].brdf;
-  std::vector<int> label(selection.size(), 0);
+  const int wanted = options.materials > 0 ? options.materials : kMostMaterials;
+  const int most = wanted == 1 ? 1 : std::min(2 * wanted, wanted + kMostExtra);
+  const MaterialFit whole = fit_material(samples_of(observations, selection), observations.channels, nullptr, options.fit);
   report(1);
-  while (static_cast<int>(materials.size()) < options.materials) {
-    const std::size_t before = materials.size();
-    if (!split_once(clusterer, materials, selection, label)) break;
-    clusterer.recluster(materials, selection, label, kGlobalRounds, result.recluster_rounds);
-    report(static_cast<int>(materials.size()));
-    if (materials.size() <= before) break;  // the new material did not survive
-  }
-  label_all(clusterer, observations, options.final_lumitexels, materials, result);
-  result.materials = std::move(materials);
+
+  // While materials are told apart they all have a lobe: what a matte whole hides, a part may show.
+  MaterialFitOptions searching = options.fit;
+  searching.choose_lobes = false;
+  searching.most_lobes = std::min(1, options.fit.most_lobes);
+  const MaterialFit start = most == 1 ? whole : fit_material(samples_of(observations, selection), observations.channels, nullptr, searching);
+  Mixture mixture = split_materials(start, observations, selection, most, searching);
+  Responsibilities r = merge_materials(mixture, observations, selection, {options.materials, searching}, report);
+
+  std::vector<BrdfFit> fits;
+  choose_lobes(mixture, observations, selection, r, options.fit, fits);
+  const LumitexelList all = with_samples(observations);
+  const std::vector<int> label = most_probable(responsibilities(mixture, observations, all));
+  const LumitexelList finalists = members_of_all(label, all, mixture.materials.size(), options.final_lumitexels);
+  r = maximise_expectation(mixture, observations, finalists, options.fit, kFinalRounds);
+  choose_lobes(mixture, observations, finalists, r, options.fit, fits);
+  result.single = fit_material(samples_of(observations, thinned(all, options.final_lumitexels)), observations.channels, &whole.model.brdf,
+                               options.fit).model;
+  label_everything(mixture, observations, all, fits, result);
   return result;
 }
 

@@ -1,87 +1,113 @@
 #include "processing/brdf/lobe_starts.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "processing/brdf/nnls.h"
+#include "processing/brdf/ordered_sum.h"
 
 namespace lumitexel {
 namespace {
 
 constexpr std::size_t kMostSamples = 4000;
-constexpr double kExponents[] = {3, 10, 30, 100, 300, 1000};
-constexpr double kPhis[] = {0.7853981633974483, 0.70, 0.87};
-// A lobe that the samples do not want at all starts here, small but able to grow: ln of 1e-4 per sr.
-constexpr double kFaintLogPeak = -9.2;
+// A lobe that the samples do not want at all starts here, small but able to grow: ln of 1e-4.
+constexpr double kFaintLogStrength = -9.2;
 
-struct ChannelSolution {
-  double diffuse = 0, peak = 0, cost = 0;
+struct System {
+  BasisMatrix matrix;
+  BasisVector right;
+  double squares = 0;
 };
 
-// Non-negative least squares in two unknowns: min sum w (kd x + A y - r)^2.
-ChannelSolution solve_channel(double xx, double xy, double yy, double xr, double yr, double rr) {
-  const auto cost = [&](double kd, double peak) {
-    return rr + kd * kd * xx + peak * peak * yy + 2.0 * (kd * peak * xy - kd * xr - peak * yr);
-  };
-  ChannelSolution best{xx > 0.0 ? std::max(0.0, xr / xx) : 0.0, 0.0, 0.0};
-  best.cost = cost(best.diffuse, 0.0);
-  const auto offer = [&](double kd, double peak) {
-    if (kd >= 0.0 && peak >= 0.0 && cost(kd, peak) < best.cost) best = {kd, peak, cost(kd, peak)};
-  };
-  if (yy > 0.0) offer(0.0, yr / yy);
-  const double determinant = xx * yy - xy * xy;
-  if (determinant > 1e-12 * xx * yy) offer((xr * yy - yr * xy) / determinant, (yr * xx - xr * xy) / determinant);
-  return best;
+// One channel's linear problem in (kd, strengths), at the lobe shapes of `brdf`.
+System channel_system(const Brdf& brdf, std::size_t channel, FitSamples samples, std::size_t stride, const ErrorModel& error) {
+  const auto n = static_cast<Eigen::Index>(brdf.lobes.size() + 1);
+  System system{BasisMatrix::Zero(n, n), BasisVector::Zero(n), 0.0};
+  const LobeFamily& family = lobe_family(brdf.family);
+  for (std::size_t s = 0; s < samples.size(); s += stride) {
+    const Observation& sample = *samples[s].observation;
+    const double r = static_cast<double>(sample.reflectance[channel]), cos_i = sample.geometry.cos_i;
+    // No model yet: the measurement stands in for it, which is biased but near enough to start from.
+    const double weight = samples[s].share / error.variance(std::max(0.0, r), static_cast<double>(sample.variance[channel]));
+    BasisVector row(n);
+    row[0] = cos_i;
+    double target = r;
+    for (std::size_t l = 0; l < brdf.lobes.size(); ++l) {
+      const Lobe& lobe = brdf.lobes[l][channel];
+      const LobeTerms terms = family.terms(lobe.log_shape, lobe.aim, sample.geometry);
+      row[static_cast<Eigen::Index>(l) + 1] = cos_i * terms.gain;
+      target -= cos_i * terms.offset;
+    }
+    system.matrix += weight * row * row.transpose();
+    system.right += weight * target * row;
+    system.squares += weight * target * target;
+  }
+  return system;
 }
 
-double solve_shape(std::span<const Observation* const> samples, std::size_t stride, const ErrorModel& error,
-                   LafortuneBrdf& brdf) {
-  LafortuneBrdf unit = brdf;  // the lobe alone, with a peak of one
-  for (auto& lobe : unit.lobes[0]) lobe.log_peak = 0.0;
-  unit.diffuse.fill(0.0);
-  double total = 0.0;
-  for (int c = 0; c < brdf.channels; ++c) {
-    const auto channel = static_cast<std::size_t>(c);
-    double xx = 0, xy = 0, yy = 0, xr = 0, yr = 0, rr = 0;
-    for (std::size_t s = 0; s < samples.size(); s += stride) {
-      const double r = static_cast<double>(samples[s]->reflectance[channel]);
-      // No model yet: the measurement stands in for it, which is biased but near enough to start from.
-      const double w = 1.0 / error.variance(std::max(0.0, r), static_cast<double>(samples[s]->variance[channel]));
-      const double x = samples[s]->geometry.cos_i;
-      const double y = predicted_reflectance(unit, c, samples[s]->geometry);
-      xx += w * x * x;
-      xy += w * x * y;
-      yy += w * y * y;
-      xr += w * x * r;
-      yr += w * y * r;
-      rr += w * r * r;
+// Sets kd and strengths of every channel to their best; returns the cost.
+double solve_strengths(FitSamples samples, std::size_t stride, const ErrorModel& error, Brdf& brdf) {
+  double cost = 0.0;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(brdf.channels); ++c) {
+    const System system = channel_system(brdf, c, samples, stride, error);
+    const BasisVector x = solve_nnls(system.matrix, system.right).weights;
+    cost += x.dot(system.matrix * x) - 2.0 * x.dot(system.right) + system.squares;
+    brdf.diffuse[c] = x[0];
+    for (std::size_t l = 0; l < brdf.lobes.size(); ++l) {
+      const double strength = x[static_cast<Eigen::Index>(l) + 1];
+      brdf.lobes[l][c].log_strength = strength > 0.0 ? std::max(kFaintLogStrength, std::log(strength)) : kFaintLogStrength;
     }
-    const ChannelSolution solution = solve_channel(xx, xy, yy, xr, yr, rr);
-    brdf.diffuse[channel] = solution.diffuse;
-    brdf.lobes[0][channel].log_peak = std::max(kFaintLogPeak, std::log(std::max(1e-300, solution.peak)));
-    total += solution.cost;
   }
-  return total;
+  return cost;
+}
+
+std::vector<double> aims_within(const LobeFamily& family, const AimRange& range) {
+  if (!family.aims) return {kMirrorAim};
+  const double middle = 0.5 * (range.least + range.most), reach = 0.3 * (range.most - range.least);
+  return {middle, middle - reach, middle + reach};
 }
 
 }  // namespace
 
-LafortuneBrdf best_lobe_start(std::span<const Observation* const> samples, int channels, const ErrorModel& error) {
+Brdf with_best_lobe(const Brdf& brdf, FitSamples samples, const LobeBounds& bounds, const ErrorModel& error) {
   const std::size_t stride = samples.size() / kMostSamples + 1;
-  LafortuneBrdf best;
+  const LobeFamily& family = lobe_family(brdf.family);
+  Brdf best = brdf;
   double best_cost = std::numeric_limits<double>::infinity();
-  for (const double phi : kPhis) {
-    for (const double exponent : kExponents) {
-      LafortuneBrdf candidate;
-      candidate.channels = channels;
-      candidate.lobes.resize(1);
-      for (auto& lobe : candidate.lobes[0]) lobe = {0.0, phi, std::log(exponent)};
-      const double cost = solve_shape(samples, stride, error, candidate);
-      if (cost < best_cost) {
-        best_cost = cost;
-        best = candidate;
-      }
+  for (const double aim : aims_within(family, bounds.aim)) {
+    for (const double log_shape : family.start_log_shapes) {
+      if (log_shape < bounds.least_log_shape || log_shape > bounds.most_log_shape) continue;
+      Brdf candidate = brdf;
+      candidate.lobes.emplace_back().fill(Lobe{0.0, log_shape, aim});
+      const double cost = solve_strengths(samples, stride, error, candidate);
+      if (!(cost < best_cost)) continue;
+      best_cost = cost;
+      best = candidate;
     }
   }
   return best;
+}
+
+Brdf diffuse_alone(FitSamples samples, const ErrorModel& error, const Brdf& at) {
+  Brdf matte;
+  matte.family = at.family;
+  matte.channels = at.channels;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(matte.channels); ++c) {
+    struct Sums {
+      double xr = 0, xx = 0;
+      Sums& operator+=(const Sums& other) { return xr += other.xr, xx += other.xx, *this; }
+    };
+    const Sums sums = ordered_sum(samples.size(), Sums{}, [&](std::size_t s, Sums& sum) {
+      const Observation& sample = *samples[s].observation;
+      const double w = samples[s].share / error.variance(predicted_reflectance(at, static_cast<int>(c), sample.geometry),
+                                                         static_cast<double>(sample.variance[c]));
+      sum.xr += w * sample.geometry.cos_i * static_cast<double>(sample.reflectance[c]);
+      sum.xx += w * sample.geometry.cos_i * sample.geometry.cos_i;
+    });
+    matte.diffuse[c] = sums.xx > 0.0 ? std::max(0.0, sums.xr / sums.xx) : 0.0;
+  }
+  return matte;
 }
 
 }  // namespace lumitexel

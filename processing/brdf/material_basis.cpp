@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "processing/brdf/lobe_family.h"
 #include "processing/brdf/nnls.h"
 
 namespace lumitexel {
@@ -11,22 +12,24 @@ namespace {
 constexpr std::size_t kVariations = 2;
 constexpr std::size_t kMostOthers = kMaxBasis - 1 - kVariations;
 constexpr std::size_t kMostBordering = 3;
-constexpr double kMaxLogExponent = 11.512925464970229;  // ln 1e5
 constexpr double kDiffuseFactor = 1.5, kExponentFactor = 1.5;
 
-LafortuneBrdf varied(const LafortuneBrdf& brdf, double diffuse_factor, double exponent_factor) {
-  LafortuneBrdf result = brdf;
+// The lobe sharper by a factor in exponent, or in 1 / alpha^2, which means the same of microfacets.
+Brdf varied(const Brdf& brdf, double diffuse_factor, double exponent_factor) {
+  const LobeFamily& family = lobe_family(brdf.family);
+  const double step = brdf.family == BrdfFamily::Lafortune ? std::log(exponent_factor) : -0.5 * std::log(exponent_factor);
+  Brdf result = brdf;
   for (double& kd : result.diffuse) kd *= diffuse_factor;
   for (auto& lobe : result.lobes) {
     for (auto& channel : lobe) {
-      channel.log_exponent = std::clamp(channel.log_exponent + std::log(exponent_factor), 0.0, kMaxLogExponent);
+      channel.log_shape = std::clamp(channel.log_shape + step, family.least_log_shape, family.most_log_shape);
     }
   }
   return result;
 }
 
 // Mean squared difference of square roots, over geometries that the session really has.
-double distance(const LafortuneBrdf& a, const LafortuneBrdf& b, const Observations& observations) {
+double distance(const Brdf& a, const Brdf& b, const Observations& observations) {
   const std::size_t stride = observations.samples.size() / 2000 + 1;
   double sum = 0.0;
   for (std::size_t s = 0; s < observations.samples.size(); s += stride) {
@@ -40,7 +43,7 @@ double distance(const LafortuneBrdf& a, const LafortuneBrdf& b, const Observatio
 }
 
 // The others in the order in which they are wanted.
-std::vector<std::size_t> choose_others(std::size_t material, const std::vector<LafortuneBrdf>& materials,
+std::vector<std::size_t> choose_others(std::size_t material, const std::vector<Brdf>& materials,
                                        const std::vector<std::size_t>& neighbours, const Observations& observations) {
   std::vector<std::size_t> others;
   for (std::size_t j = 0; j < materials.size(); ++j) {
@@ -58,12 +61,12 @@ std::vector<std::size_t> choose_others(std::size_t material, const std::vector<L
 
 }  // namespace
 
-std::vector<std::vector<LafortuneBrdf>> material_bases(const std::vector<LafortuneBrdf>& materials,
+std::vector<std::vector<Brdf>> material_bases(const std::vector<Brdf>& materials,
                                                        const std::vector<std::vector<std::size_t>>& neighbour_counts,
                                                        const Observations& observations) {
-  std::vector<std::vector<LafortuneBrdf>> bases;
+  std::vector<std::vector<Brdf>> bases;
   for (std::size_t j = 0; j < materials.size(); ++j) {
-    std::vector<LafortuneBrdf> basis{materials[j], varied(materials[j], kDiffuseFactor, kExponentFactor),
+    std::vector<Brdf> basis{materials[j], varied(materials[j], kDiffuseFactor, kExponentFactor),
                                      varied(materials[j], 1.0 / kDiffuseFactor, 1.0 / kExponentFactor)};
     for (const std::size_t other : choose_others(j, materials, neighbour_counts[j], observations)) {
       basis.push_back(materials[other]);

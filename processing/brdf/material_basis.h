@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "processing/brdf/lafortune.h"
+#include "processing/brdf/brdf.h"
 #include "processing/brdf/observations.h"
 
 namespace lumitexel {
@@ -11,7 +11,7 @@ namespace lumitexel {
 // For each material: first itself, then two variations of itself (more and less diffuse light, with a sharper and a
 // broader lobe), then up to five others: those that border on it most (neighbour_counts[a][b]: pairs of adjacent texels of
 // materials a and b), then those most like it. At most kMaxBasis in all.
-std::vector<std::vector<LafortuneBrdf>> material_bases(const std::vector<LafortuneBrdf>& materials,
+std::vector<std::vector<Brdf>> material_bases(const std::vector<Brdf>& materials,
                                                        const std::vector<std::vector<std::size_t>>& neighbour_counts,
                                                        const Observations& observations);
 

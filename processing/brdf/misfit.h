@@ -1,4 +1,4 @@
-// How badly a BRDF explains samples.
+// How badly a BRDF explains samples: minus twice the log likelihood under an error model, up to a constant. 0 for no samples.
 #pragma once
 
 #include <span>
@@ -8,13 +8,8 @@
 
 namespace lumitexel {
 
-// Degrees of freedom of the Student's t that a sample's residuals are taken to follow.
-inline constexpr double kFreedom = 4.0;
-
-// Minus twice the log likelihood, up to a constant, of Student's t with the error model's variance. Its tails are
-// heavy, so one missed shadow does not decide, yet never flat, so that even samples that no BRDF explains still know
-// which one is nearer. 0 for no samples.
-double misfit(const LafortuneBrdf& brdf, std::span<const Observation> samples, const ErrorModel& error);
-double misfit(const LafortuneBrdf& brdf, std::span<const Observation* const> samples, const ErrorModel& error);
+double misfit(const Brdf& brdf, std::span<const Observation> samples, const ErrorModel& error);
+// Every sample counted by its share.
+double misfit(const Brdf& brdf, FitSamples samples, const ErrorModel& error);
 
 }  // namespace lumitexel

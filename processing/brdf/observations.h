@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "processing/brdf/lafortune.h"
+#include "processing/brdf/brdf.h"
 
 namespace lumitexel {
 
@@ -28,9 +28,22 @@ struct Observations {
   }
 };
 
-// r = f * cos_i that the BRDF predicts in channel c.
-inline double predicted_reflectance(const LafortuneBrdf& brdf, int c, const LobeGeometry& geometry) {
+// A sample and how much it counts in a fit: the share of its lumitexel that belongs to the material, 0 … 1.
+struct FitSample {
+  const Observation* observation = nullptr;
+  double share = 1;
+  std::uint32_t lumitexel = 0;  // samples of one lumitexel stand together
+};
+using FitSamples = std::span<const FitSample>;
+
+// r = f * cos_i that the BRDF predicts: in channel c, and in all channels.
+inline double predicted_reflectance(const Brdf& brdf, int c, const LobeGeometry& geometry) {
   return evaluate(brdf, c, geometry) * geometry.cos_i;
+}
+inline ChannelValues predicted_reflectance(const Brdf& brdf, const LobeGeometry& geometry) {
+  ChannelValues values = evaluate(brdf, geometry);
+  for (double& value : values) value *= geometry.cos_i;
+  return values;
 }
 
 }  // namespace lumitexel

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "processing/brdf/misfit.h"
 
 namespace lumitexel {
 namespace {
@@ -18,39 +17,52 @@ constexpr double kGlossWidths[] = {0.01, 0.03, 0.1, 0.3, 1.0};
 constexpr double kWeightWidth = 2.0;
 // Relative to at least this reflectance (1/sr): a metal has no diffuse light to vary by a fraction of.
 constexpr double kFaintest = 0.01;
-constexpr LobeGeometry kDiffuseGeometry{1.0, 0.7071067811865476, 0.7071067811865476};  // wi = wo, 45 degrees
-constexpr LobeGeometry kGlossGeometry{0.5, 0.8660254037844387, 0.8660254037844387};    // mirror, 30 degrees
+constexpr LobeGeometry kDiffuseGeometry = geometry_of_cosines(1.0, 0.7071067811865476, 0.7071067811865476);  // wi = wo, 45 degrees
+constexpr LobeGeometry kGlossGeometry = geometry_of_cosines(0.5, 0.8660254037844387, 0.8660254037844387); // mirror, 30 degrees
 
-struct SampleEquation {  // one sample in one channel
-  BasisVector predicted;
-  double measured = 0, weight = 0;
+using SamplePredictions = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxChannels, kMaxBasis>;  // channels x bases
+using SampleValues = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxChannels, 1>;
+
+struct SampleEquations {  // of one sample, a row a channel: as measured, and whitened by the error model at the material's prediction
+  SamplePredictions predicted, whitened;
+  SampleValues measured, target;
 };
 
 struct TexelSystem {
-  std::vector<SampleEquation> equations;
+  std::vector<SampleEquations> samples;
   BasisMatrix matrix;
   BasisVector right;
 };
 
-TexelSystem system_of(std::span<const Observation> samples, int channels, const std::vector<LafortuneBrdf>& basis,
-                      const ErrorModel& error) {
+SampleEquations equations_of(const Observation& sample, int channels, const std::vector<Brdf>& basis, const ErrorModel& error) {
+  SampleEquations equations{SamplePredictions(channels, basis.size()), {}, SampleValues(channels), {}};
+  SampleValues inverse_scale(channels);
+  for (std::size_t k = 0; k < basis.size(); ++k) {
+    const ChannelValues values = predicted_reflectance(basis[k], sample.geometry);
+    for (int c = 0; c < channels; ++c) equations.predicted(c, static_cast<Eigen::Index>(k)) = values[static_cast<std::size_t>(c)];
+  }
+  for (int c = 0; c < channels; ++c) {
+    const auto channel = static_cast<std::size_t>(c);
+    equations.measured[c] = static_cast<double>(sample.reflectance[channel]);
+    inverse_scale[c] = 1.0 / std::sqrt(error.variance(equations.predicted(c, 0), static_cast<double>(sample.variance[channel])));
+  }
+  equations.whitened = inverse_scale.asDiagonal() * equations.predicted;
+  equations.target = inverse_scale.cwiseProduct(equations.measured);
+  if (error.whitening().size() > 0) {
+    equations.whitened = (error.whitening() * equations.whitened).eval();
+    equations.target = (error.whitening() * equations.target).eval();
+  }
+  return equations;
+}
+
+TexelSystem system_of(std::span<const Observation> samples, int channels, const std::vector<Brdf>& basis, const ErrorModel& error) {
   const auto n = static_cast<Eigen::Index>(basis.size());
   TexelSystem system{{}, BasisMatrix::Zero(n, n), BasisVector::Zero(n)};
   for (const Observation& sample : samples) {
-    for (int c = 0; c < channels; ++c) {
-      const auto channel = static_cast<std::size_t>(c);
-      SampleEquation equation;
-      equation.predicted.resize(n);
-      for (Eigen::Index k = 0; k < n; ++k) {
-        equation.predicted[k] = predicted_reflectance(basis[static_cast<std::size_t>(k)], c, sample.geometry);
-      }
-      equation.measured = static_cast<double>(sample.reflectance[channel]);
-      equation.weight =
-          1.0 / error.variance(equation.predicted[0], static_cast<double>(sample.variance[channel]));
-      system.matrix += equation.weight * equation.predicted * equation.predicted.transpose();
-      system.right += equation.weight * equation.measured * equation.predicted;
-      system.equations.push_back(equation);
-    }
+    const SampleEquations equations = equations_of(sample, channels, basis, error);
+    system.matrix += equations.whitened.transpose() * equations.whitened;
+    system.right += equations.whitened.transpose() * equations.target;
+    system.samples.push_back(equations);
   }
   return system;
 }
@@ -58,7 +70,7 @@ TexelSystem system_of(std::span<const Observation> samples, int channels, const 
 // Precision of the prior on the weights; its mean is (1, 0, 0, …), the material itself.
 class PriorPrecision {
  public:
-  PriorPrecision(const std::vector<LafortuneBrdf>& basis, int channels)
+  PriorPrecision(const std::vector<Brdf>& basis, int channels)
       : diffuse_(gram(basis, channels, kDiffuseGeometry)), gloss_(gram(basis, channels, kGlossGeometry)) {}
 
   void add_to(const TexelPrior& prior, BasisMatrix& matrix, BasisVector& right) const {
@@ -72,7 +84,7 @@ class PriorPrecision {
 
  private:
   // Mean over channels of b b^T, b the bases' reflectances relative to the material's at one geometry.
-  static BasisMatrix gram(const std::vector<LafortuneBrdf>& basis, int channels, const LobeGeometry& geometry) {
+  static BasisMatrix gram(const std::vector<Brdf>& basis, int channels, const LobeGeometry& geometry) {
     const auto n = static_cast<Eigen::Index>(basis.size());
     BasisMatrix sum = BasisMatrix::Zero(n, n);
     for (int c = 0; c < channels; ++c) {
@@ -114,14 +126,16 @@ double relative_sigma(const TexelSystem& system, const NnlsSolution& solution, B
   }
   const auto decomposition = matrix.ldlt();
   double variance = 0.0, square = 1e-30;
-  for (const SampleEquation& equation : system.equations) {
-    BasisVector direction = equation.predicted;
-    for (int i = 0; i < static_cast<int>(direction.size()); ++i) {
-      if (!(solution.free >> i & 1u)) direction[i] = 0.0;
+  for (const SampleEquations& sample : system.samples) {
+    for (Eigen::Index c = 0; c < sample.whitened.rows(); ++c) {
+      BasisVector direction = sample.whitened.row(c).transpose();
+      const double predicted = direction.dot(solution.weights);
+      for (int i = 0; i < static_cast<int>(direction.size()); ++i) {
+        if (!(solution.free >> i & 1u)) direction[i] = 0.0;
+      }
+      variance += direction.dot(decomposition.solve(direction));
+      square += predicted * predicted;
     }
-    const double predicted = equation.predicted.dot(solution.weights);
-    variance += equation.weight * direction.dot(decomposition.solve(direction));
-    square += equation.weight * predicted * predicted;
   }
   const double relative = std::sqrt(variance / square);
   return std::isfinite(relative) ? relative : 1.0;  // nothing is known
@@ -134,23 +148,23 @@ struct Candidates {
 
 // What leaving samples out costs with one candidate.
 struct LeftOut {
-  double tempered = 0;  // as misfit() counts deviations
+  double tempered = 0;  // tempered deviations
   double plain = 0;     // plain squared deviations, as a rendering shows them
 };
 
+// As Student's t with few degrees of freedom has it, whatever the material's own tails: one missed highlight must not choose the prior.
+double tempered(double squares, int channels) {
+  constexpr double kFreedom = 4.0;
+  return (kFreedom + channels) * std::log1p(squares / kFreedom);
+}
+
 // Adds the cost of each sample of the texel, predicted from the others, per candidate.
-void leave_one_out(std::span<const Observation> samples, int channels, const std::vector<LafortuneBrdf>& basis,
+void leave_one_out(std::span<const Observation> samples, int channels, const std::vector<Brdf>& basis,
                    const ErrorModel& error, const Candidates& candidates, std::vector<LeftOut>& sums) {
   const TexelSystem system = system_of(samples, channels, basis, error);
-  const auto stride = static_cast<std::size_t>(channels);
-  for (std::size_t s = 0; s < samples.size(); ++s) {
-    BasisMatrix matrix = system.matrix;
-    BasisVector right = system.right;
-    for (std::size_t e = s * stride; e < (s + 1) * stride; ++e) {
-      const SampleEquation& equation = system.equations[e];
-      matrix -= equation.weight * equation.predicted * equation.predicted.transpose();
-      right -= equation.weight * equation.measured * equation.predicted;
-    }
+  for (const SampleEquations& left_out : system.samples) {
+    const BasisMatrix matrix = system.matrix - left_out.whitened.transpose() * left_out.whitened;
+    const BasisVector right = system.right - left_out.whitened.transpose() * left_out.target;
     for (std::size_t p = 0; p < candidates.priors.size(); ++p) {
       BasisVector weights = material_alone(matrix.rows());
       if (!nothing_varies(candidates.priors[p])) {
@@ -159,20 +173,16 @@ void leave_one_out(std::span<const Observation> samples, int channels, const std
         candidates.precision.add_to(candidates.priors[p], with_prior, right_with_prior);
         weights = solve_nnls(with_prior, right_with_prior).weights;
       }
-      double squares = 0.0;
-      for (std::size_t e = s * stride; e < (s + 1) * stride; ++e) {
-        const double residual = system.equations[e].predicted.dot(weights) - system.equations[e].measured;
-        squares += system.equations[e].weight * residual * residual;
-        sums[p].plain += residual * residual;
-      }
-      sums[p].tempered += (kFreedom + channels) * std::log1p(squares / kFreedom);
+      const double squares = (left_out.whitened * weights - left_out.target).squaredNorm();
+      sums[p].plain += (left_out.predicted * weights - left_out.measured).squaredNorm();
+      sums[p].tempered += tempered(squares, channels);
     }
   }
 }
 
 }  // namespace
 
-TexelWeights project_texel(std::span<const Observation> samples, int channels, const std::vector<LafortuneBrdf>& basis,
+TexelWeights project_texel(std::span<const Observation> samples, int channels, const std::vector<Brdf>& basis,
                            const ErrorModel& error, const TexelPrior& prior) {
   TexelWeights result;
   result.weight.assign(basis.size(), 0.0f);
@@ -193,7 +203,7 @@ TexelWeights project_texel(std::span<const Observation> samples, int channels, c
 }
 
 PriorChoice choose_prior(const Observations& observations, const std::vector<std::size_t>& members,
-                         const std::vector<LafortuneBrdf>& basis, const ErrorModel& error) {
+                         const std::vector<Brdf>& basis, const ErrorModel& error) {
   const Candidates candidates{candidate_priors(), PriorPrecision(basis, observations.channels)};
   std::vector<std::size_t> tried;
   for (const std::size_t i : members) {

@@ -30,7 +30,7 @@ struct TexelWeights {
 };
 
 // Weights of one texel. basis[0] is the material itself.
-TexelWeights project_texel(std::span<const Observation> samples, int channels, const std::vector<LafortuneBrdf>& basis,
+TexelWeights project_texel(std::span<const Observation> samples, int channels, const std::vector<Brdf>& basis,
                            const ErrorModel& error, const TexelPrior& prior);
 
 struct PriorChoice {
@@ -44,6 +44,6 @@ struct PriorChoice {
 // predict them worse than the material alone does in plain squares, which is what a rendering shows.
 // members: lumitexels of the material; at most some thousand of them are tried.
 PriorChoice choose_prior(const Observations& observations, const std::vector<std::size_t>& members,
-                         const std::vector<LafortuneBrdf>& basis, const ErrorModel& error);
+                         const std::vector<Brdf>& basis, const ErrorModel& error);
 
 }  // namespace lumitexel

@@ -20,9 +20,7 @@ void take_spread(const std::vector<std::size_t>& from, std::size_t count, std::v
 double mirror_nearness(std::span<const Observation> samples) {
   double nearest = -1.0;
   for (const Observation& sample : samples) {
-    const LobeGeometry& g = sample.geometry;
-    const double half_length_squared = 2.0 + 2.0 * g.wi_dot_wo;  // |wi + wo|^2
-    if (half_length_squared > 0.0) nearest = std::max(nearest, (g.cos_i + g.cos_o) / std::sqrt(half_length_squared));
+    nearest = std::max(nearest, 1.0 / std::sqrt(1.0 + half_tangent_squared(sample.geometry)));
   }
   return nearest;
 }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "drivers/error.h"
+#include "processing/brdf/lobe_family.h"
 #include "processing/image/exr_file.h"
 
 namespace lumitexel {
@@ -12,31 +13,45 @@ namespace {
 
 using Json = nlohmann::ordered_json;  // keys stay in the order written: the file is meant to be read
 
-constexpr double kMinLogExponent = -4.605170185988091;  // ln 1e-2
-constexpr double kMaxLogExponent = 11.512925464970229;  // ln 1e5
 constexpr double kBoundSlack = 1e-9;                    // the bounds are rounded logarithms
 constexpr double kAgreement = 1e-6;  // of a natural value with its logarithm; both are printed to full precision
 
 Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json to_json(const LafortuneLobe& lobe) {
-  return {{"peak", finite_or_null(std::exp(lobe.log_peak))},
-          {"phi_rad", lobe.phi},
-          {"exponent", std::exp(lobe.log_exponent)},
-          {"log_peak", finite_or_null(lobe.log_peak)},
-          {"log_exponent", lobe.log_exponent}};
+// What a family calls its lobes' parameters.
+struct LobeKeys {
+  const char *strength, *log_strength, *shape, *log_shape;
+};
+
+LobeKeys lobe_keys(BrdfFamily family) {
+  switch (family) {
+    case BrdfFamily::Ggx: return {"f0", "log_f0", "alpha", "log_alpha"};
+    case BrdfFamily::Ward: return {"albedo", "log_albedo", "alpha", "log_alpha"};
+    case BrdfFamily::Lafortune: break;
+  }
+  return {"peak", "log_peak", "exponent", "log_exponent"};
 }
 
-Json to_json(const LafortuneBrdf& brdf) {
+Json to_json(BrdfFamily family, const Lobe& lobe) {
+  const LobeKeys keys = lobe_keys(family);
+  Json json = {{keys.strength, finite_or_null(std::exp(lobe.log_strength))}};
+  if (lobe_family(family).aims) json["phi_rad"] = lobe.aim;
+  json[keys.shape] = std::exp(lobe.log_shape);
+  json[keys.log_strength] = finite_or_null(lobe.log_strength);
+  json[keys.log_shape] = lobe.log_shape;
+  return json;
+}
+
+Json to_json(const Brdf& brdf) {
   Json diffuse = Json::array(), lobes = Json::array();
   const auto channels = static_cast<std::size_t>(brdf.channels);
   for (std::size_t c = 0; c < channels; ++c) diffuse.push_back(brdf.diffuse[c]);
   for (const auto& lobe : brdf.lobes) {
     Json entries = Json::array();
-    for (std::size_t c = 0; c < channels; ++c) entries.push_back(to_json(lobe[c]));
+    for (std::size_t c = 0; c < channels; ++c) entries.push_back(to_json(brdf.family, lobe[c]));
     lobes.push_back(entries);
   }
-  return {{"diffuse", diffuse}, {"lobes", lobes}};
+  return {{"family", to_string(brdf.family)}, {"diffuse", diffuse}, {"lobes", lobes}};
 }
 
 // A place in the document that knows its own name, for error messages.
@@ -62,6 +77,15 @@ class Field {
     return all;
   }
   bool is_null() const { return value_.is_null(); }
+  bool has(const char* key) const { return value_.is_object() && value_.contains(key); }
+  BrdfFamily family() const {
+    if (!value_.is_string()) fail(value_.dump(), "lafortune, ggx or ward");
+    try {
+      return brdf_family_from_string(value_.get<std::string>());
+    } catch (const BadInput&) {
+      fail(value_.dump(), "lafortune, ggx or ward");
+    }
+  }
   double number(double minimum, double maximum) const {
     const bool fits = value_.is_number() && value_.get<double>() >= minimum && value_.get<double>() <= maximum;
     if (!fits)
@@ -89,20 +113,23 @@ void check_agreement(const Field& natural, double logarithm) {
   }
 }
 
-LafortuneLobe lobe_from(const Field& field) {
-  LafortuneLobe lobe;
-  const Field log_peak = field["log_peak"];
-  lobe.log_peak = log_peak.is_null() ? -std::numeric_limits<double>::infinity() : log_peak.number();
-  lobe.phi = field["phi_rad"].number();
-  lobe.log_exponent = field["log_exponent"].number(kMinLogExponent - kBoundSlack, kMaxLogExponent + kBoundSlack);
-  check_agreement(field["peak"], lobe.log_peak);
-  check_agreement(field["exponent"], lobe.log_exponent);
+Lobe lobe_from(BrdfFamily name, const Field& field) {
+  const LobeKeys keys = lobe_keys(name);
+  const LobeFamily& family = lobe_family(name);
+  Lobe lobe;
+  const Field log_strength = field[keys.log_strength];
+  lobe.log_strength = log_strength.is_null() ? -std::numeric_limits<double>::infinity() : log_strength.number();
+  if (family.aims) lobe.aim = field["phi_rad"].number();
+  lobe.log_shape = field[keys.log_shape].number(family.least_log_shape - kBoundSlack, family.most_log_shape + kBoundSlack);
+  check_agreement(field[keys.strength], lobe.log_strength);
+  check_agreement(field[keys.shape], lobe.log_shape);
   return lobe;
 }
 
-LafortuneBrdf brdf_from(const Field& field, int channels) {
-  LafortuneBrdf brdf;
+Brdf brdf_from(const Field& field, int channels) {
+  Brdf brdf;
   brdf.channels = channels;
+  if (field.has("family")) brdf.family = field["family"].family();
   std::size_t c = 0;
   for (const Field& diffuse : field["diffuse"].elements(channels)) {
     const double kd = diffuse.number();
@@ -112,7 +139,7 @@ LafortuneBrdf brdf_from(const Field& field, int channels) {
   for (const Field& entries : field["lobes"].elements()) {
     auto& lobe = brdf.lobes.emplace_back();
     c = 0;
-    for (const Field& entry : entries.elements(channels)) lobe[c++] = lobe_from(entry);
+    for (const Field& entry : entries.elements(channels)) lobe[c++] = lobe_from(brdf.family, entry);
   }
   return brdf;
 }
@@ -123,7 +150,7 @@ std::string encode_basis(const Model& model) {
   Json materials = Json::array();
   for (const ModelMaterial& material : model.materials) {
     Json basis = Json::array();
-    for (const LafortuneBrdf& brdf : material.basis) basis.push_back(to_json(brdf));
+    for (const Brdf& brdf : material.basis) basis.push_back(to_json(brdf));
     materials.push_back({{"brdf", to_json(material.brdf)}, {"basis", basis}});
   }
   const Json document = {

@@ -1,10 +1,11 @@
 // basis.json: the model's BRDFs as a person reads them, and without loss.
 //
 //   {"channels": ["R","G","B"], "single": BRDF, "materials": [{"brdf": BRDF, "basis": [BRDF, …]}, …]}
-//   BRDF = {"diffuse": [kd per channel, 1/sr], "lobes": [[LOBE per channel], …]}
-//   LOBE = {"peak": A (1/sr), "phi_rad", "exponent": N, "log_peak": ln A, "log_exponent": ln N}
+//   BRDF = {"family", "diffuse": [kd per channel, 1/sr], "lobes": [[LOBE per channel], …]}
+//   LOBE of "lafortune" = {"peak": A (1/sr), "phi_rad", "exponent": N, "log_peak": ln A, "log_exponent": ln N}
+//   LOBE of "ggx" = {"f0", "alpha", "log_f0", "log_alpha"}, of "ward" = {"albedo", "alpha", "log_albedo", "log_alpha"}
 //
-// in the parametrisation of processing/brdf/lafortune.h. The two logarithms are what is read back, to the last bit;
+// in the parametrisations of processing/brdf/lobe_family.h; no "family" means Lafortune's. The two logarithms are what is read back, to the last bit;
 // peak and exponent say the same for the reader's eye, null where they overflow. log_peak is null for a lobe that is
 // switched off (minus infinity).
 #pragma once
@@ -18,7 +19,7 @@
 namespace lumitexel {
 
 struct BasisTable {
-  LafortuneBrdf single;
+  Brdf single;
   std::vector<ModelMaterial> materials;
 };
 

@@ -27,7 +27,10 @@ ErrorModel error_model(const Observations& observations, const FitOptions& optio
   if (values.empty()) return {};
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
-  return {options.relative_error, std::max(1e-6, options.error_floor_share * static_cast<double>(*middle))};
+  ErrorModel error;
+  error.relative = options.relative_error;
+  error.floor = std::max(1e-6, options.error_floor_share * static_cast<double>(*middle));
+  return error;
 }
 
 Clustering learn_materials(const Observations& observations, const FitOptions& options, const ErrorModel& error,
@@ -46,15 +49,16 @@ Clustering learn_materials(const Observations& observations, const FitOptions& o
   return cluster_materials(observations, selection, cluster_options, [&](int found) { progress.update(found); });
 }
 
-std::vector<TexelWeights> project_all(const Observations& observations, const std::vector<int>& label, const Model& model,
-                                      const FitOptions& options, const ErrorModel& error, FitSummary& summary,
-                                      Progress& progress) {
+std::vector<TexelWeights> project_all(const Observations& observations, const Clustering& clustering, const Model& model,
+                                      const FitOptions& options, FitSummary& summary, Progress& progress) {
+  const std::vector<int>& label = clustering.label;
   std::vector<std::vector<std::size_t>> members(model.materials.size());
   for (std::size_t i = 0; i < label.size(); ++i) members[static_cast<std::size_t>(label[i])].push_back(i);
   std::vector<TexelWeights> weights(label.size());
   progress.begin("texel weights", static_cast<std::int64_t>(model.materials.size()), "materials");
   for (std::size_t j = 0; j < members.size(); ++j) {
     const auto& basis = model.materials[j].basis;
+    const ErrorModel& error = clustering.materials[j].model.error;
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     summary.prior.push_back(options.plain_projection ? PriorChoice{{kInfinity, kInfinity}, 0.0, 0.0, 0}
                                                      : choose_prior(observations, members[j], basis, error));
@@ -72,12 +76,12 @@ std::vector<TexelWeights> project_all(const Observations& observations, const st
 
 void set_materials(const Clustering& clustering, const Atlas& atlas, const LumitexelSet& lumitexels,
                    const Observations& observations, Model& model) {
-  std::vector<LafortuneBrdf> brdfs;
-  for (const FittedMaterial& material : clustering.materials) brdfs.push_back(material.brdf);
+  std::vector<Brdf> brdfs;
+  for (const FittedMaterial& material : clustering.materials) brdfs.push_back(material.model.brdf);
   const auto counts = neighbour_counts(atlas, lumitexels, clustering.label, brdfs.size());
   const auto bases = material_bases(brdfs, counts, observations);
   for (std::size_t j = 0; j < brdfs.size(); ++j) model.materials.push_back({brdfs[j], bases[j]});
-  model.single = clustering.single;
+  model.single = clustering.single.brdf;
 }
 
 }  // namespace
@@ -110,7 +114,7 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
   set_materials(clustering, atlas, gathered.set, observations, model);
 
   timer.begin("projection");
-  const auto weights = project_all(observations, clustering.label, model, options, error, summary, progress);
+  const auto weights = project_all(observations, clustering, model, options, summary, progress);
 
   timer.begin("model");
   summary.single = stage_error(model, FitStage::Single, observations, clustering.label, weights);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "processing/brdf/lafortune.h"
+#include "processing/brdf/brdf.h"
 #include "processing/image/image.h"
 #include "processing/surface/mesh.h"
 
@@ -20,15 +20,15 @@ const char* to_string(FitStage stage);  // "single", "cluster", "projection"
 FitStage fit_stage_from_string(const std::string& name);  // throws BadInput
 
 struct ModelMaterial {
-  LafortuneBrdf brdf;                // of the cluster
-  std::vector<LafortuneBrdf> basis;  // what its texels mix, weights >= 0
+  Brdf brdf;                // of the cluster
+  std::vector<Brdf> basis;  // what its texels mix, weights >= 0
 };
 
 struct Model {
   static constexpr int kNoMaterial = -1;
 
   int channels = 3;
-  LafortuneBrdf single;  // one BRDF for the whole object
+  Brdf single;  // one BRDF for the whole object
   std::vector<ModelMaterial> materials;
   Mesh mesh;  // with texture coordinates into the atlas, in the session's world
 

@@ -49,7 +49,7 @@ Image material_map(const ViewRenderer& renderer, const View& view) {
   return shown;
 }
 
-Image material_sphere(const LafortuneBrdf& brdf, int size_px) {
+Image material_sphere(const Brdf& brdf, int size_px) {
   const Eigen::Vector3d wi = Eigen::Vector3d(-0.4, 0.5, 1.0).normalized(), wo = Eigen::Vector3d::UnitZ();
   Image sphere(size_px, size_px, brdf.channels);
   const double radius_px = 0.5 * size_px - 1.0;

@@ -17,7 +17,7 @@ Image material_map(const ViewRenderer& renderer, const View& view);
 
 // A sphere of one material (its cluster's BRDF), seen from the front, lit by a directional light from above left that
 // gives an ideal white surface facing it radiance 1. Linear radiance; `white` of sphere_white shows all of them alike.
-Image material_sphere(const LafortuneBrdf& brdf, int size_px);
+Image material_sphere(const Brdf& brdf, int size_px);
 double sphere_white(const std::vector<Image>& spheres);
 
 }  // namespace lumitexel

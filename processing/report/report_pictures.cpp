@@ -64,7 +64,7 @@ View map_view(const ReportSubject& subject) {
   return framing_view(mesh, subject.model.channels, kMapSize_px, towards_camera, up);
 }
 
-std::string lobe_text(const LafortuneBrdf& brdf) {
+std::string lobe_text(const Brdf& brdf) {
   std::string text = "diffuse albedo ";
   for (int c = 0; c < brdf.channels; ++c) {
     text += (c > 0 ? " / " : "") + html::number(std::numbers::pi * brdf.diffuse[static_cast<std::size_t>(c)], 2);
@@ -72,11 +72,11 @@ std::string lobe_text(const LafortuneBrdf& brdf) {
   for (const auto& lobe : brdf.lobes) {
     text += "; lobe peak ";
     for (int c = 0; c < brdf.channels; ++c) {
-      text += (c > 0 ? " / " : "") + html::number(std::exp(lobe[static_cast<std::size_t>(c)].log_peak), 2);
+      text += (c > 0 ? " / " : "") + html::number(std::exp(lobe[static_cast<std::size_t>(c)].log_strength), 2);
     }
     text += " 1/sr, exponent ";
     for (int c = 0; c < brdf.channels; ++c) {
-      text += (c > 0 ? " / " : "") + html::number(std::exp(lobe[static_cast<std::size_t>(c)].log_exponent), 2);
+      text += (c > 0 ? " / " : "") + html::number(std::exp(lobe[static_cast<std::size_t>(c)].log_shape), 2);
     }
   }
   return text;

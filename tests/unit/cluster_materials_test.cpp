@@ -15,7 +15,7 @@ namespace lumitexel {
 namespace {
 
 struct ThreeMaterials {
-  std::vector<LafortuneBrdf> truth{one_lobe({0.20, 0.05, 0.04}, {0.3, 0.3, 0.3}, 0.7853981633974483, 8.0),
+  std::vector<Brdf> truth{one_lobe({0.20, 0.05, 0.04}, {0.3, 0.3, 0.3}, 0.7853981633974483, 8.0),
                                    one_lobe({0.04, 0.06, 0.20}, {1.5, 1.5, 1.5}, 0.7853981633974483, 60.0),
                                    one_lobe({0.01, 0.01, 0.01}, {3.0, 2.0, 1.0}, 0.7853981633974483, 25.0)};
   Observations observations;
@@ -52,7 +52,7 @@ TEST(ClusterMaterials, FindsUnevenMaterialsAndLabelsTheirTexels) {
     for (std::size_t j = 0; j < 3; ++j) {
       const auto best = std::max_element(votes[j].begin(), votes[j].end());
       right += *best;
-      const LafortuneBrdf& truth = scene.truth[static_cast<std::size_t>(best - votes[j].begin())];
+      const Brdf& truth = scene.truth[static_cast<std::size_t>(best - votes[j].begin())];
       // 5 % noise over at least 100 x 6 x 3 samples leaves well under 2 % in N.
       EXPECT_NEAR(found.materials[j].brdf.lobes[0][0].log_exponent, truth.lobes[0][0].log_exponent, 0.06) << seed;
     }

@@ -16,7 +16,7 @@ std::vector<const Observation*> pointers(const Observations& observations) {
   return list;
 }
 
-double log_exponent_error(const LafortuneBrdf& fit, const LafortuneBrdf& truth) {
+double log_exponent_error(const Brdf& fit, const Brdf& truth) {
   return fit.lobes[0][0].log_exponent - truth.lobes[0][0].log_exponent;
 }
 
@@ -25,7 +25,7 @@ TEST(FitOneLobe, FindsTheTruthFromNoiselessSamples) {
   for (const double exponent : {5.0, 40.0, 400.0}) {
     for (const double phi : {0.70, 0.7853981633974483, 0.81}) {  // more, and N = 400 peaks beyond the samples
       std::mt19937 random(3);
-      const LafortuneBrdf truth = one_lobe({0.1, 0.06, 0.2}, {1.5, 0.8, 0.4}, phi, exponent);
+      const Brdf truth = one_lobe({0.1, 0.06, 0.2}, {1.5, 0.8, 0.4}, phi, exponent);
       Observations observations;
       add_lumitexels(observations, truth, 400, 8, 0.0, random);
       const LobeFit fit = fit_one_lobe(pointers(observations), 3, nullptr, {});
@@ -44,7 +44,7 @@ TEST(FitOneLobe, CovarianceTellsTheSpreadOverNoise) {
   // 60 seeds: the standard deviation itself is known to 1/sqrt(2*60) = 9 %; three of those either way.
   constexpr int kSeeds = 60;
   constexpr double kAllowed = 0.28;
-  const LafortuneBrdf truth = one_lobe({0.1, 0.06, 0.2}, {1.5, 0.8, 0.4}, 0.7853981633974483, 30.0);
+  const Brdf truth = one_lobe({0.1, 0.06, 0.2}, {1.5, 0.8, 0.4}, 0.7853981633974483, 30.0);
   LobeFitOptions options;
   options.error = {0.05, 1e-4};
   double squares = 0.0, stated = 0.0;
@@ -62,7 +62,7 @@ TEST(FitOneLobe, CovarianceTellsTheSpreadOverNoise) {
 
 TEST(FitOneLobe, SeparateShapesFollowEachChannel) {
   std::mt19937 random(5);
-  LafortuneBrdf truth = one_lobe({0.1, 0.06, 0.2}, {1.5, 0.8, 0.9}, 0.7853981633974483, 20.0);
+  Brdf truth = one_lobe({0.1, 0.06, 0.2}, {1.5, 0.8, 0.9}, 0.7853981633974483, 20.0);
   truth.lobes[0][2].log_exponent = std::log(80.0);
   Observations observations;
   add_lumitexels(observations, truth, 400, 8, 0.0, random);
@@ -99,7 +99,7 @@ TEST(FitOneLobe, NeverReflectsMuchMoreThanItReceives) {
     for (float& r : sample.reflectance) r *= static_cast<float>(1.0 + boost);
   }
   const LobeFit fit = fit_one_lobe(pointers(observations), 3, nullptr, {});
-  const LafortuneLobe& lobe = fit.brdf.lobes[0][0];
+  const Lobe& lobe = fit.brdf.lobes[0][0];
   EXPECT_LE(2.0 * M_PI * std::exp(lobe.log_peak) / (std::exp(lobe.log_exponent) + 2.0), 4.0 + 1e-9);
 }
 

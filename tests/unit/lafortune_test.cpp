@@ -1,4 +1,4 @@
-#include "processing/brdf/lafortune.h"
+#include "processing/brdf/brdf.h"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,11 @@
 namespace lumitexel {
 namespace {
 
-LafortuneBrdf lobe(double kd, double peak, double phi, double exponent) {
-  LafortuneBrdf brdf;
+Brdf lobe(double kd, double peak, double phi, double exponent) {
+  Brdf brdf;
   brdf.channels = 1;
   brdf.diffuse = {kd};
-  brdf.lobes = {{LafortuneLobe{std::log(peak), phi, std::log(exponent)}}};
+  brdf.lobes = {{Lobe{std::log(peak), phi, std::log(exponent)}}};
   return brdf;
 }
 
@@ -21,8 +21,8 @@ Eigen::Vector3d direction(double theta, double azimuth) {
 }
 
 // The paper's form, (Cx (ux vx + uy vy) + Cz uz vz)^N in the local frame, in extended precision.
-long double paper_form(const LafortuneBrdf& brdf, const Eigen::Vector3d& wi, const Eigen::Vector3d& wo) {
-  const LafortuneLobe& l = brdf.lobes[0][0];
+long double paper_form(const Brdf& brdf, const Eigen::Vector3d& wi, const Eigen::Vector3d& wo) {
+  const Lobe& l = brdf.lobes[0][0];
   const long double exponent = std::exp(static_cast<long double>(l.log_exponent));
   const long double sine = std::sin(static_cast<long double>(l.phi)), cosine = std::cos(static_cast<long double>(l.phi));
   const long double s = std::exp(static_cast<long double>(l.log_peak) / exponent) /
@@ -40,7 +40,7 @@ TEST(Lafortune, AgreesWithThePapersForm) {
   int compared = 0;
   for (int trial = 0; trial < 2000; ++trial) {
     const double exponent = std::exp(log_n(random));
-    const LafortuneBrdf brdf = lobe(0.1, 2.5, phi(random), exponent);
+    const Brdf brdf = lobe(0.1, 2.5, phi(random), exponent);
     const Eigen::Vector3d wi = direction(theta(random), azimuth(random)), wo = direction(theta(random), azimuth(random));
     const double value = evaluate(brdf, 0, lobe_geometry(Eigen::Vector3d::UnitZ(), wi, wo));
     const auto truth = static_cast<double>(paper_form(brdf, wi, wo));
@@ -51,7 +51,7 @@ TEST(Lafortune, AgreesWithThePapersForm) {
 }
 
 TEST(Lafortune, IsReciprocalAndDoesNotDependOnTheFrame) {
-  const LafortuneBrdf brdf = lobe(0.05, 3.0, 0.7, 40.0);
+  const Brdf brdf = lobe(0.05, 3.0, 0.7, 40.0);
   const Eigen::Vector3d wi = direction(0.5, 0.3), wo = direction(0.6, 3.2), n = Eigen::Vector3d::UnitZ();
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
   const double value = evaluate(brdf, 0, lobe_geometry(n, wi, wo));
@@ -60,7 +60,7 @@ TEST(Lafortune, IsReciprocalAndDoesNotDependOnTheFrame) {
 }
 
 TEST(Lafortune, PeaksAtTheMirrorDirectionAndIsBlackBelowTheHorizon) {
-  const LafortuneBrdf brdf = lobe(0.0, 7.0, 0.7853981633974483, 1e5);
+  const Brdf brdf = lobe(0.0, 7.0, 0.7853981633974483, 1e5);
   const Eigen::Vector3d wi = direction(0.5, 0.0);
   EXPECT_NEAR(evaluate(brdf, 0, lobe_geometry(Eigen::Vector3d::UnitZ(), wi, direction(0.5, M_PI))), 7.0, 7e-9);
   EXPECT_EQ(evaluate(brdf, 0, lobe_geometry(Eigen::Vector3d::UnitZ(), wi, direction(1.6, M_PI))), 0.0);
@@ -70,7 +70,7 @@ TEST(Lafortune, StaysFiniteAtTheEndsOfItsRange) {
   for (const double exponent : {1e-2, 1.0, 1e5}) {
     for (const double peak : {1e-6, 1.0, 1e6}) {
       for (const double theta : {0.0, 0.7, 1.5706}) {
-        const LafortuneBrdf brdf = lobe(0.1, peak, 0.7853981633974483, exponent);
+        const Brdf brdf = lobe(0.1, peak, 0.7853981633974483, exponent);
         for (const double azimuth : {0.0, 1.57, 3.14159}) {
           const double value = evaluate(brdf, 0, lobe_geometry(Eigen::Vector3d::UnitZ(), direction(theta, 0.0),
                                                                direction(theta, azimuth)));

@@ -19,9 +19,9 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-LafortuneBrdf odd_brdf(std::mt19937& random) {
+Brdf odd_brdf(std::mt19937& random) {
   std::uniform_real_distribution<double> unit(0.0, 1.0);
-  LafortuneBrdf brdf = diffuse_brdf(unit(random), unit(random), unit(random));
+  Brdf brdf = diffuse_brdf(unit(random), unit(random), unit(random));
   auto& lobe = brdf.lobes.emplace_back();
   for (auto& channel : lobe) channel = {10.0 * unit(random) - 5.0, unit(random), 15.0 * unit(random) - 4.0};
   lobe[1].log_peak = -std::numeric_limits<double>::infinity();  // switched off
@@ -48,7 +48,7 @@ Model odd_model() {
   return model;
 }
 
-void expect_equal(const LafortuneBrdf& a, const LafortuneBrdf& b) {
+void expect_equal(const Brdf& a, const Brdf& b) {
   EXPECT_EQ(a.channels, b.channels);
   EXPECT_EQ(a.diffuse, b.diffuse);
   ASSERT_EQ(a.lobes.size(), b.lobes.size());

@@ -9,14 +9,14 @@
 
 namespace lumitexel {
 
-inline LafortuneBrdf diffuse_brdf(double red, double green, double blue) {
-  LafortuneBrdf brdf;
+inline Brdf diffuse_brdf(double red, double green, double blue) {
+  Brdf brdf;
   brdf.diffuse = {red, green, blue};
   return brdf;
 }
 
 // Maps of the given size: every texel of material 0, without normals (so the mesh's are used), one basis of weight 1.
-inline Model model_of(Mesh mesh, int width, int height, const LafortuneBrdf& brdf) {
+inline Model model_of(Mesh mesh, int width, int height, const Brdf& brdf) {
   Model model;
   model.mesh = std::move(mesh);
   model.width = width;

@@ -14,7 +14,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const ErrorModel kError{0.05, 1e-3};
 
-std::vector<LafortuneBrdf> two_bases() {
+std::vector<Brdf> two_bases() {
   return {one_lobe({0.10, 0.06, 0.05}, {0.6, 0.6, 0.6}, 0.7853981633974483, 20.0),
           one_lobe({0.03, 0.04, 0.15}, {0.2, 0.2, 0.2}, 0.7853981633974483, 80.0)};
 }

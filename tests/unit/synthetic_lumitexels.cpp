@@ -11,8 +11,8 @@ Eigen::Vector3d direction(double theta, double azimuth) {
 
 }  // namespace
 
-LafortuneBrdf one_lobe(std::array<double, 3> diffuse, std::array<double, 3> peak, double phi, double exponent) {
-  LafortuneBrdf brdf;
+Brdf one_lobe(std::array<double, 3> diffuse, std::array<double, 3> peak, double phi, double exponent) {
+  Brdf brdf;
   brdf.channels = 3;
   brdf.diffuse = diffuse;
   brdf.lobes.resize(1);
@@ -20,7 +20,7 @@ LafortuneBrdf one_lobe(std::array<double, 3> diffuse, std::array<double, 3> peak
   return brdf;
 }
 
-void add_lumitexels(Observations& observations, const LafortuneBrdf& truth, int count, int samples, double noise,
+void add_lumitexels(Observations& observations, const Brdf& truth, int count, int samples, double noise,
                     std::mt19937& random) {
   std::uniform_real_distribution<double> theta(0.0, 1.2), azimuth(0.0, 2.0 * M_PI), spread(-0.25, 0.25);
   std::normal_distribution<double> normal(0.0, 1.0);

@@ -7,11 +7,11 @@
 
 namespace lumitexel {
 
-LafortuneBrdf one_lobe(std::array<double, 3> diffuse, std::array<double, 3> peak, double phi, double exponent);
+Brdf one_lobe(std::array<double, 3> diffuse, std::array<double, 3> peak, double phi, double exponent);
 
 // `count` more lumitexels with `samples` samples each, half of which lie near the mirror direction so that the lobe is seen;
 // noise: standard deviation relative to the value.
-void add_lumitexels(Observations& observations, const LafortuneBrdf& truth, int count, int samples, double noise,
+void add_lumitexels(Observations& observations, const Brdf& truth, int count, int samples, double noise,
                     std::mt19937& random);
 
 }  // namespace lumitexel

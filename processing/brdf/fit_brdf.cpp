@@ -1,0 +1,131 @@
+#include "processing/brdf/fit_brdf.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "processing/brdf/misfit.h"
+#include "processing/brdf/normal_equations.h"
+
+namespace lumitexel {
+namespace {
+
+constexpr double kConvergedFall = 1e-7;  // relative fall of the cost at which the iteration ends
+constexpr double kLeastDamping = 1e-9, kMostDamping = 1e9;
+// Share of the largest eigenvalue of the scaled normal matrix below which a direction counts as undetermined.
+constexpr double kRankTolerance = 1e-12;
+
+// (J^T J + damping * diagonal) step = -gradient over the parameters that are free.
+Eigen::VectorXd damped_step(const NormalEquations& equations, const std::vector<bool>& held, double damping) {
+  Eigen::MatrixXd matrix = equations.matrix;
+  Eigen::VectorXd right = -equations.gradient;
+  const double smallest = 1e-14 * std::max(1e-300, matrix.diagonal().maxCoeff());
+  for (int i = 0; i < matrix.rows(); ++i) {
+    matrix(i, i) += damping * matrix(i, i) + smallest;
+    if (!held[static_cast<std::size_t>(i)]) continue;
+    matrix.row(i).setZero();
+    matrix.col(i).setZero();
+    matrix(i, i) = 1.0;
+    right[i] = 0.0;
+  }
+  return matrix.ldlt().solve(right);
+}
+
+struct Descent {
+  Eigen::VectorXd values;
+  int iterations = 0;
+  bool converged = false;
+};
+
+Descent levenberg_marquardt(const BrdfProblem& problem, const BrdfParameters& layout, Eigen::VectorXd values, int max_iterations) {
+  Descent descent{std::move(values)};
+  double damping = 1e-3;
+  NormalEquations equations = problem.linearise(descent.values);
+  while (descent.iterations < max_iterations && !descent.converged) {
+    ++descent.iterations;
+    const std::vector<bool> held = layout.held(descent.values, equations.gradient);
+    Eigen::VectorXd trial = descent.values + damped_step(equations, held, damping);
+    if (!trial.allFinite()) trial = descent.values;
+    layout.clamp(trial);
+    const double cost = problem.cost(trial);
+    if (cost <= equations.cost) {
+      descent.converged = equations.cost - cost <= kConvergedFall * equations.cost;
+      descent.values = trial;
+      damping = std::max(kLeastDamping, damping * 0.1);
+      if (!descent.converged) equations = problem.linearise(descent.values);
+    } else {
+      damping *= 10.0;
+      descent.converged = damping > kMostDamping;  // no direction falls
+    }
+  }
+  return descent;
+}
+
+// Inverse of the normal matrix over the free parameters, scaled to a unit diagonal first; what is not determined gets no
+// variance and sets rank_deficient.
+Eigen::MatrixXd covariance_of(const NormalEquations& equations, const std::vector<bool>& held, bool& rank_deficient) {
+  const Eigen::Index n = equations.matrix.rows();
+  Eigen::VectorXd scale = Eigen::VectorXd::Zero(n);
+  int wanted = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double diagonal = equations.matrix(i, i);
+    if (held[static_cast<std::size_t>(i)]) continue;
+    if (diagonal > 0.0) scale[i] = 1.0 / std::sqrt(diagonal);
+    else rank_deficient = true;
+    wanted += diagonal > 0.0;
+  }
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * equations.matrix * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+  Eigen::VectorXd inverse = Eigen::VectorXd::Zero(n);
+  int determined = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (eigen.eigenvalues()[i] <= kRankTolerance * static_cast<double>(n)) continue;
+    inverse[i] = 1.0 / eigen.eigenvalues()[i];
+    ++determined;
+  }
+  if (determined < wanted) rank_deficient = true;
+  const Eigen::MatrixXd root = scale.asDiagonal() * eigen.eigenvectors();
+  return root * inverse.asDiagonal() * root.transpose();
+}
+
+void state_uncertainty(const BrdfProblem& problem, const BrdfParameters& layout, const Eigen::VectorXd& values, BrdfFit& fit) {
+  const NormalEquations equations = problem.linearise(values);
+  const double residuals = problem.total_weight() * layout.channels();
+  fit.chi_squared = residuals > 0.0 ? equations.cost / residuals : 0.0;
+  const double spread = equations.cost / std::max(1.0, residuals - layout.size());
+  fit.covariance = spread * covariance_of(equations, layout.held(values, equations.gradient), fit.rank_deficient);
+}
+
+}  // namespace
+
+BrdfParameters parameters_of(const Brdf& start, const BrdfFitOptions& options) {
+  std::vector<LobeBounds> bounds = options.bounds;
+  bounds.resize(start.lobes.size(), usual_bounds(start.family));
+  return BrdfParameters(start.family, start.channels, options.shared_shape, std::move(bounds));
+}
+
+BrdfFit fit_brdf(const Brdf& start, FitSamples samples, const BrdfFitOptions& options) {
+  BrdfFit fit;
+  const BrdfParameters layout = parameters_of(start, options);
+  Eigen::VectorXd values = layout.from(start);
+  fit.brdf = layout.brdf(values);
+  fit.covariance = Eigen::MatrixXd::Zero(layout.size(), layout.size());
+  fit.rank_deficient = samples.empty();
+  if (samples.empty()) return fit;
+
+  BrdfProblem problem(samples, layout, options.error);
+  for (int round = 0; round < options.reweightings; ++round) {
+    problem.reweight(values);
+    const Descent descent = levenberg_marquardt(problem, layout, values, options.max_iterations);
+    values = descent.values;
+    fit.iterations += descent.iterations;
+    fit.converged = descent.converged;
+  }
+  problem.reweight(values);
+  fit.brdf = layout.brdf(values);
+  fit.misfit = misfit(fit.brdf, samples, options.error);
+  state_uncertainty(problem, layout, values, fit);
+  return fit;
+}
+
+}  // namespace lumitexel

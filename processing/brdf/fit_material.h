@@ -1,0 +1,40 @@
+// A material learnt from samples: its BRDF and its error model together, with as many lobes as the samples ask for.
+#pragma once
+
+#include "processing/brdf/fit_brdf.h"
+
+namespace lumitexel {
+
+struct MaterialFitOptions {
+  BrdfFamily family = BrdfFamily::Lafortune;
+  int most_lobes = 1;          // 0 to 3
+  bool choose_lobes = true;    // false: exactly most_lobes, asked for or not
+  bool shared_shape = true;
+  bool estimate_error = true;  // false: `error` is the last word
+  bool any_aim = false;        // lobes may point anywhere (the paper); else near the mirror direction or back at the light
+  ErrorModel error;            // where the estimate starts
+};
+
+struct MaterialModel {
+  Brdf brdf;
+  ErrorModel error;
+};
+
+struct MaterialFit {
+  MaterialModel model;
+  BrdfFit fit;                 // the last one, with the covariance
+  double criterion = 0;        // misfit times independence, plus ln(n) for each parameter; lower is better
+};
+
+// Grows the BRDF from diffuse light, lobe by lobe, each forward or (from the second on) retro-reflective, whichever explains more.
+// A lobe stays if it lowers the criterion: the Bayesian information criterion with the likelihood tempered by the error model's
+// `independence`, since samples of one lumitexel err together. With a `start`, its lobes are tried as they are, too.
+MaterialFit fit_material(FitSamples samples, int channels, const Brdf* start, const MaterialFitOptions& options);
+
+// The options of a fit that keeps the number and kind of lobes of `model`.
+BrdfFitOptions refit_options(const MaterialModel& model, const MaterialFitOptions& options);
+
+// The family whose fit has the lowest criterion, fitted.
+MaterialFit fit_best_family(FitSamples samples, int channels, const MaterialFitOptions& options);
+
+}  // namespace lumitexel

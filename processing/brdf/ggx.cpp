@@ -1,0 +1,59 @@
+// Microfacets of the GGX distribution (Walter, Marschner, Li, Torrance 2007) with Smith's height-correlated masking (Heitz 2014) and
+// Schlick's Fresnel term:
+//
+//   f = D G F / (4 cos_i cos_o),   D = 1 / (pi alpha^2 cos^4 (1 + tan^2 / alpha^2)^2) at the half vector,   F = F0 + (1 - F0) (1 - cos_d)^5,
+//   G / (4 cos_i cos_o) = 1/2 / (cos_o sqrt(alpha^2 + (1 - alpha^2) cos_i^2) + cos_i sqrt(alpha^2 + (1 - alpha^2) cos_o^2))
+#include <cmath>
+
+#include "processing/brdf/lobe_family.h"
+
+namespace lumitexel {
+namespace {
+
+constexpr double kPi = 3.141592653589793;
+constexpr double kLeastLogAlpha = -6.907755278982137;  // 1e-3
+// alpha = 0.9, 0.6, 0.4, 0.25, 0.15, 0.08, 0.04
+constexpr double kLogShapes[] = {-0.10536051565782628, -0.5108256237659907, -0.916290731874155, -1.3862943611198906,
+                                 -1.8971199848858813,  -2.5257286443082556, -3.2188758248682006};
+
+struct Facets {
+  double value = 0, by_log_alpha = 0;  // D G / (4 cos_i cos_o) and its slope
+  double schlick = 0;                  // (1 - cos_d)^5
+};
+
+Facets facets(double log_alpha, const LobeGeometry& g) {
+  const double alpha2 = std::exp(2.0 * log_alpha);
+  const double tangent2 = half_tangent_squared(g), cosine2 = 1.0 / (1.0 + tangent2);
+  const double stretched = 1.0 + tangent2 / alpha2;
+  const double distribution = 1.0 / (kPi * alpha2 * (stretched * cosine2) * (stretched * cosine2));
+  const double root_i = std::sqrt(alpha2 + (1.0 - alpha2) * g.cos_i * g.cos_i);
+  const double root_o = std::sqrt(alpha2 + (1.0 - alpha2) * g.cos_o * g.cos_o);
+  const double below = g.cos_o * root_i + g.cos_i * root_o;
+  Facets result;
+  result.value = std::isfinite(tangent2) ? distribution * 0.5 / below : 0.0;
+  // d ln D / d ln alpha = -2 + 4 (tan^2 / alpha^2) / (1 + tan^2 / alpha^2)
+  const double by_distribution = -2.0 + 4.0 * (tangent2 / alpha2) / stretched;
+  const double by_root = alpha2 * (g.cos_o * (1.0 - g.cos_i * g.cos_i) / root_i + g.cos_i * (1.0 - g.cos_o * g.cos_o) / root_o);
+  if (result.value > 0.0) result.by_log_alpha = result.value * (by_distribution - by_root / below);
+  const double fall = 1.0 - cos_difference_angle(g);
+  result.schlick = fall * fall * fall * fall * fall;
+  return result;
+}
+
+LobeTerms terms(double log_alpha, double, const LobeGeometry& geometry) {
+  const Facets f = facets(log_alpha, geometry);
+  return {f.value * (1.0 - f.schlick), f.value * f.schlick};
+}
+
+LobeSlopes slopes(double log_alpha, double, const LobeGeometry& geometry) {
+  const Facets f = facets(log_alpha, geometry);
+  return {f.value * (1.0 - f.schlick), f.value * f.schlick, f.by_log_alpha * (1.0 - f.schlick), f.by_log_alpha * f.schlick, 0.0};
+}
+
+double most_log_strength(double, double energy) { return std::log(energy); }
+
+}  // namespace
+
+const LobeFamily kGgxFamily{"ggx", false, kLeastLogAlpha, 0.0, kMirrorAim, kMirrorAim, most_log_strength, kLogShapes, terms, slopes};
+
+}  // namespace lumitexel

@@ -1,0 +1,26 @@
+// Merges materials of a mixture as long as the samples do not object.
+#pragma once
+
+#include <functional>
+
+#include "processing/brdf/mixture.h"
+
+namespace lumitexel {
+
+struct MergeOptions {
+  int materials = 0;  // merge until so many are left; 0: for as long as the criterion wants
+  MaterialFitOptions fit;
+};
+
+// Greedy: always the pair whose merging loses least likelihood, then the mixture settles again. With materials = 0 a pair is merged
+// unless keeping it apart gains both
+//   2 * independence * gain > ln(n) for each parameter of one material (the Bayesian information criterion, tempered as in
+//   fit_material.h), and
+//   kLeastGain of log likelihood for each sample of the pair: a difference too small to see is none, however many samples prove it.
+// The gain is measured with the pair's common error model, so that materials must differ in what they look like, not in how well
+// they are explained.
+inline constexpr double kLeastGain = 0.02;
+Responsibilities merge_materials(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
+                                 const MergeOptions& options, const std::function<void(int)>& report);
+
+}  // namespace lumitexel

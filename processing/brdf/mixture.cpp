@@ -1,0 +1,113 @@
+#include "processing/brdf/mixture.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "processing/brdf/estimate_error.h"
+#include "processing/brdf/misfit.h"
+#include "processing/brdf/ordered_sum.h"
+
+namespace lumitexel {
+namespace {
+
+constexpr double kSettled = 2e-6;         // relative change of the likelihood at which the iteration ends
+constexpr double kLeastProbability = 1e-3;  // below it a lumitexel is not worth its time in a material's fit
+constexpr int kStepsPerRound = 3;         // of Levenberg-Marquardt
+
+MaterialModel maximised(const MaterialModel& model, FitSamples samples, const MaterialFitOptions& options) {
+  BrdfFitOptions fit = refit_options(model, options);
+  fit.reweightings = 1;
+  fit.max_iterations = kStepsPerRound;
+  MaterialModel better{fit_brdf(model.brdf, samples, fit).brdf, model.error};
+  if (options.estimate_error) better.error = updated_error_model(better.brdf, samples, model.error);
+  return better;
+}
+
+// True if a material vanished.
+bool maximise(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels, const Responsibilities& r,
+              const MaterialFitOptions& options) {
+  std::vector<double> members(mixture.materials.size(), 0.0);
+  for (std::size_t l = 0; l < lumitexels.size(); ++l) {
+    for (std::size_t k = 0; k < members.size(); ++k) members[k] += r.at(l, k);
+  }
+  const double most = *std::max_element(members.begin(), members.end());
+  oneapi::tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t k) {
+    if (members[k] < std::min(kFewestMembers, most)) return;
+    mixture.materials[k] = maximised(mixture.materials[k], samples_of(observations, lumitexels, r, k), options);
+  });
+  Mixture kept;
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    if (members[k] < std::min(kFewestMembers, most)) continue;
+    kept.materials.push_back(mixture.materials[k]);
+    kept.share.push_back(members[k]);
+  }
+  const double all = std::accumulate(kept.share.begin(), kept.share.end(), 0.0);
+  for (double& share : kept.share) share /= all;
+  const bool vanished = kept.materials.size() != mixture.materials.size();
+  mixture = std::move(kept);
+  return vanished;
+}
+
+// ln of the sum of exponentials, and the exponentials themselves normalised.
+double normalise(double* log_probability, std::size_t count) {
+  const double most = *std::max_element(log_probability, log_probability + count);
+  double sum = 0.0;
+  for (std::size_t k = 0; k < count; ++k) sum += log_probability[k] = std::exp(log_probability[k] - most);
+  for (std::size_t k = 0; k < count; ++k) log_probability[k] /= sum;
+  return most + std::log(sum);
+}
+
+}  // namespace
+
+Responsibilities responsibilities(const Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels) {
+  const std::size_t count = mixture.materials.size();
+  Responsibilities r{count, std::vector<double>(lumitexels.size() * count), std::vector<double>(lumitexels.size() * count), 0.0};
+  r.log_likelihood = ordered_sum(lumitexels.size(), 0.0, [&](std::size_t l, double& sum) {
+    double* log_probability = &r.probability[l * count];
+    for (std::size_t k = 0; k < count; ++k) {
+      const MaterialModel& material = mixture.materials[k];
+      const double value = misfit(material.brdf, observations.of(lumitexels[l]), material.error);
+      r.misfit[l * count + k] = value;
+      log_probability[k] = std::log(mixture.share[k]) - 0.5 * value;
+    }
+    sum += normalise(log_probability, count);
+  });
+  return r;
+}
+
+std::vector<FitSample> samples_of(const Observations& observations, const LumitexelList& lumitexels, const Responsibilities& r,
+                                  std::size_t k) {
+  std::vector<FitSample> samples;
+  for (std::size_t l = 0; l < lumitexels.size(); ++l) {
+    if (r.at(l, k) < kLeastProbability) continue;
+    for (const Observation& sample : observations.of(lumitexels[l])) {
+      samples.push_back({&sample, r.at(l, k), static_cast<std::uint32_t>(lumitexels[l])});
+    }
+  }
+  return samples;
+}
+
+std::vector<FitSample> samples_of(const Observations& observations, const LumitexelList& lumitexels) {
+  std::vector<FitSample> samples;
+  for (const std::size_t i : lumitexels) {
+    for (const Observation& sample : observations.of(i)) samples.push_back({&sample, 1.0, static_cast<std::uint32_t>(i)});
+  }
+  return samples;
+}
+
+Responsibilities maximise_expectation(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
+                                      const MaterialFitOptions& options, int rounds) {
+  Responsibilities r = responsibilities(mixture, observations, lumitexels);
+  for (int round = 0; round < rounds; ++round) {
+    const double before = r.log_likelihood;
+    const bool vanished = maximise(mixture, observations, lumitexels, r, options);
+    r = responsibilities(mixture, observations, lumitexels);
+    if (!vanished && std::abs(r.log_likelihood - before) <= kSettled * std::abs(before)) break;
+  }
+  return r;
+}
+
+}  // namespace lumitexel

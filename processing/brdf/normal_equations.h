@@ -1,0 +1,44 @@
+// The least-squares problem of a BRDF fit: whitened residuals of weighted samples and their normal equations.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "processing/brdf/brdf_parameters.h"
+#include "processing/brdf/error_model.h"
+#include "processing/brdf/observations.h"
+
+namespace lumitexel {
+
+struct NormalEquations {
+  Eigen::MatrixXd matrix;     // J^T J
+  Eigen::VectorXd gradient;   // J^T e
+  double cost = 0;            // e^T e
+};
+
+NormalEquations& operator+=(NormalEquations& a, const NormalEquations& b);
+
+class BrdfProblem {
+ public:
+  BrdfProblem(FitSamples samples, const BrdfParameters& layout, const ErrorModel& error);
+
+  // Freezes scales and robust weights at the given parameters.
+  void reweight(const Eigen::VectorXd& at);
+  double cost(const Eigen::VectorXd& at) const;
+  NormalEquations linearise(const Eigen::VectorXd& at) const;
+  double total_weight() const;  // of the samples, as frozen
+
+ private:
+  struct SampleWeight {
+    std::array<double, kMaxChannels> inverse_scale{};
+    double root = 0;  // of share times robust weight
+  };
+  void add(const Eigen::VectorXd& at, std::size_t sample, NormalEquations& sums) const;
+
+  FitSamples samples_;
+  const BrdfParameters& layout_;
+  const ErrorModel& error_;
+  std::vector<SampleWeight> weights_;
+};
+
+}  // namespace lumitexel
