@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "processing/brdf/error_choice.h"
 #include "processing/brdf/merge_materials.h"
 #include "processing/brdf/split_materials.h"
 
@@ -12,21 +13,6 @@ namespace {
 
 constexpr int kFinalRounds = 4;
 constexpr int kMostExtra = 8;  // materials beyond those wanted that splitting may make
-
-LumitexelList with_samples(const Observations& observations) {
-  LumitexelList some;
-  for (std::size_t i = 0; i < observations.lumitexels(); ++i) {
-    if (!observations.of(i).empty()) some.push_back(i);
-  }
-  return some;
-}
-
-LumitexelList thinned(const LumitexelList& list, std::size_t most) {
-  const std::size_t stride = std::max<std::size_t>(1, (list.size() + most - 1) / std::max<std::size_t>(1, most));
-  LumitexelList some;
-  for (std::size_t k = 0; k < list.size(); k += stride) some.push_back(list[k]);
-  return some;
-}
 
 std::vector<int> most_probable(const Responsibilities& r) {
   std::vector<int> label(r.lumitexels());
@@ -64,45 +50,47 @@ void choose_lobes(Mixture& mixture, const Observations& observations, const Lumi
   });
 }
 
-void label_everything(const Mixture& mixture, const Observations& observations, const LumitexelList& all,
-                      const std::vector<BrdfFit>& fits, Clustering& result) {
-  const std::vector<int> label = most_probable(responsibilities(mixture, observations, all));
-  for (std::size_t k = 0; k < mixture.materials.size(); ++k) result.materials.push_back({mixture.materials[k], fits[k], 0});
-  for (const int material : label) ++result.materials[static_cast<std::size_t>(material)].members;
-  const auto largest = std::max_element(result.materials.begin(), result.materials.end(),
-                                        [](const auto& a, const auto& b) { return a.members < b.members; });
-  result.label.assign(observations.lumitexels(), static_cast<int>(largest - result.materials.begin()));
-  for (std::size_t l = 0; l < all.size(); ++l) result.label[all[l]] = label[l];
-}
-
 }  // namespace
+
+void set_labels(const std::vector<int>& label, const LumitexelList& all, std::size_t lumitexels, Clustering& clustering) {
+  for (const int material : label) ++clustering.materials[static_cast<std::size_t>(material)].members;
+  const auto largest = std::max_element(clustering.materials.begin(), clustering.materials.end(),
+                                        [](const auto& a, const auto& b) { return a.members < b.members; });
+  clustering.label.assign(lumitexels, static_cast<int>(largest - clustering.materials.begin()));
+  for (std::size_t l = 0; l < all.size(); ++l) clustering.label[all[l]] = label[l];
+}
 
 Clustering cluster_materials(const Observations& observations, const LumitexelList& selection, const ClusterOptions& options,
                              const std::function<void(int)>& report) {
   Clustering result;
   const int wanted = options.materials > 0 ? options.materials : kMostMaterials;
   const int most = wanted == 1 ? 1 : std::min(2 * wanted, wanted + kMostExtra);
-  const MaterialFit whole = fit_material(samples_of(observations, selection), observations.channels, nullptr, options.fit);
-  report(1);
+  report(0);
 
   // While materials are told apart they all have a lobe: what a matte whole hides, a part may show.
   MaterialFitOptions searching = options.fit;
   searching.choose_lobes = false;
   searching.most_lobes = std::min(1, options.fit.most_lobes);
-  const MaterialFit start = most == 1 ? whole : fit_material(samples_of(observations, selection), observations.channels, nullptr, searching);
+  searching.estimate_error = options.errors == ErrorSource::Estimated;
+  const MaterialFit start = fit_material(samples_of(observations, selection), observations.channels, nullptr, searching);
   Mixture mixture = split_materials(start, observations, selection, most, searching);
+  if (options.errors == ErrorSource::Auto) searching.estimate_error = estimated_errors_serve(mixture, observations, selection, searching);
   Responsibilities r = merge_materials(mixture, observations, selection, {options.materials, searching}, report);
 
+  MaterialFitOptions settled = options.fit;
+  settled.estimate_error = searching.estimate_error;
+  result.estimated_errors = settled.estimate_error;
   std::vector<BrdfFit> fits;
-  choose_lobes(mixture, observations, selection, r, options.fit, fits);
+  choose_lobes(mixture, observations, selection, r, settled, fits);
   const LumitexelList all = with_samples(observations);
   const std::vector<int> label = most_probable(responsibilities(mixture, observations, all));
   const LumitexelList finalists = members_of_all(label, all, mixture.materials.size(), options.final_lumitexels);
-  r = maximise_expectation(mixture, observations, finalists, options.fit, kFinalRounds);
-  choose_lobes(mixture, observations, finalists, r, options.fit, fits);
-  result.single = fit_material(samples_of(observations, thinned(all, options.final_lumitexels)), observations.channels, &whole.model.brdf,
-                               options.fit).model;
-  label_everything(mixture, observations, all, fits, result);
+  r = maximise_expectation(mixture, observations, finalists, settled, kFinalRounds);
+  choose_lobes(mixture, observations, finalists, r, settled, fits);
+  result.single = fit_material(samples_of(observations, thinned(all, options.final_lumitexels)), observations.channels, &start.model.brdf,
+                               settled).model;
+  for (std::size_t k = 0; k < mixture.materials.size(); ++k) result.materials.push_back({mixture.materials[k], fits[k], 0});
+  set_labels(most_probable(responsibilities(mixture, observations, all)), all, observations.lumitexels(), result);
   return result;
 }
 

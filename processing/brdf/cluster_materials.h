@@ -10,7 +10,12 @@
 
 namespace lumitexel {
 
+// Whose error model the materials are fitted with (MaterialFitOptions::estimate_error). Auto: estimated, unless that predicts left-out
+// lumitexels worse (error_choice.h).
+enum class ErrorSource { Given, Estimated, Auto };
+
 struct ClusterOptions {
+  ErrorSource errors = ErrorSource::Auto;
   int materials = 4;                    // 0: as many as the samples ask for, up to kMostMaterials
   std::size_t final_lumitexels = 5000;  // a material's final fit takes about so many of its members
   MaterialFitOptions fit;
@@ -26,8 +31,12 @@ struct FittedMaterial {
 struct Clustering {
   MaterialModel single;                   // one BRDF for everything, where the splitting begins
   std::vector<FittedMaterial> materials;  // fewer than asked for if the samples do not tell so many apart
+  bool estimated_errors = false;          // which source it was
   std::vector<int> label;                 // material of every lumitexel; those without samples get the largest material
 };
+
+// Counts members, and labels the lumitexels without samples with the largest material. label: of each in `all`.
+void set_labels(const std::vector<int>& label, const LumitexelList& all, std::size_t lumitexels, Clustering& clustering);
 
 // Learns on `selection` (lumitexel indices, ascending): splits into about twice as many materials as wanted (split_materials.h), lets
 // the mixture settle, merges (merge_materials.h), asks each material anew which lobes it needs, and settles on many of each

@@ -18,6 +18,9 @@ using ChannelMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, k
 struct ErrorModel {
   static constexpr double kGaussian = 1e9;  // degrees of freedom from which the normal distribution serves
 
+  ErrorModel() = default;
+  ErrorModel(double relative_scale, double floor_scale) : relative(relative_scale), floor(floor_scale) {}
+
   double relative = 0.3;  // scale as a fraction of the predicted reflectance
   double floor = 1e-3;    // scale for a prediction of zero, 1/sr
   double freedom = 4.0;

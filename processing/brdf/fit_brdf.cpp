@@ -15,22 +15,6 @@ constexpr double kLeastDamping = 1e-9, kMostDamping = 1e9;
 // Share of the largest eigenvalue of the scaled normal matrix below which a direction counts as undetermined.
 constexpr double kRankTolerance = 1e-12;
 
-// (J^T J + damping * diagonal) step = -gradient over the parameters that are free.
-Eigen::VectorXd damped_step(const NormalEquations& equations, const std::vector<bool>& held, double damping) {
-  Eigen::MatrixXd matrix = equations.matrix;
-  Eigen::VectorXd right = -equations.gradient;
-  const double smallest = 1e-14 * std::max(1e-300, matrix.diagonal().maxCoeff());
-  for (int i = 0; i < matrix.rows(); ++i) {
-    matrix(i, i) += damping * matrix(i, i) + smallest;
-    if (!held[static_cast<std::size_t>(i)]) continue;
-    matrix.row(i).setZero();
-    matrix.col(i).setZero();
-    matrix(i, i) = 1.0;
-    right[i] = 0.0;
-  }
-  return matrix.ldlt().solve(right);
-}
-
 struct Descent {
   Eigen::VectorXd values;
   int iterations = 0;
@@ -113,7 +97,7 @@ BrdfFit fit_brdf(const Brdf& start, FitSamples samples, const BrdfFitOptions& op
   fit.rank_deficient = samples.empty();
   if (samples.empty()) return fit;
 
-  BrdfProblem problem(samples, layout, options.error);
+  BrdfProblem problem(samples, layout, options.error, options.robust);
   for (int round = 0; round < options.reweightings; ++round) {
     problem.reweight(values);
     const Descent descent = levenberg_marquardt(problem, layout, values, options.max_iterations);

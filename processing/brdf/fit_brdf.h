@@ -14,6 +14,7 @@ struct BrdfFitOptions {
   bool shared_shape = true;        // one lobe shape for all channels; the paper fits each channel apart
   std::vector<LobeBounds> bounds;  // one entry a lobe of the start; shorter: usual_bounds for the rest
   ErrorModel error;
+  bool robust = true;              // outlying samples count less, as the error model's tails have it
   int reweightings = 3;            // 1: weights of the start alone, as for an error model that does not depend on the model
   int max_iterations = 30;         // of Levenberg-Marquardt, for each weighting
 };

@@ -80,6 +80,7 @@ BrdfFitOptions refit_options(const MaterialModel& model, const MaterialFitOption
   BrdfFitOptions fit;
   fit.shared_shape = options.shared_shape;
   fit.error = model.error;
+  fit.robust = options.estimate_error;
   for (const auto& lobe : model.brdf.lobes) fit.bounds.push_back(bounds_at(lobe[0], options));
   return fit;
 }

@@ -10,7 +10,10 @@ struct MaterialFitOptions {
   int most_lobes = 1;          // 0 to 3
   bool choose_lobes = true;    // false: exactly most_lobes, asked for or not
   bool shared_shape = true;
-  bool estimate_error = true;  // false: `error` is the last word
+  // True: each material's error model is estimated from its own residuals, and outlying samples count less in its fit. That is
+  // efficient, and right where what is left is noise. False: `error` is the last word and every sample counts, so that the fit is the
+  // best mean prediction even where residuals have causes of their own, such as normals that the coarse mesh does not have.
+  bool estimate_error = true;
   bool any_aim = false;        // lobes may point anywhere (the paper); else near the mirror direction or back at the light
   ErrorModel error;            // where the estimate starts
 };

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "processing/brdf/estimate_error.h"
+#include "processing/brdf/left_out_error.h"
 #include "processing/brdf/misfit.h"
 
 namespace lumitexel {
@@ -119,19 +121,76 @@ void apply(const Merge& merge, Mixture& mixture) {
   mixture.share.erase(mixture.share.begin() + static_cast<std::ptrdiff_t>(merge.pair.second));
 }
 
+// A stage of merging, and what left-out samples say of it, per lumitexel.
+struct Candidate {
+  Mixture mixture;
+  std::vector<SquaredError> errors;
+};
+
+// Both kinds of error on one scale: shares of what the last candidate, one material, leaves.
+std::vector<double> relative_errors(const Candidate& candidate, const SquaredError& scale) {
+  std::vector<double> values;
+  for (const SquaredError& error : candidate.errors) values.push_back(error.clipped / scale.clipped + error.root / scale.root);
+  return values;
+}
+
+double mean_excess_in_standard_errors(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t l = 0; l < a.size(); ++l) {
+    sum += a[l] - b[l];
+    squares += (a[l] - b[l]) * (a[l] - b[l]);
+  }
+  return squares > 0.0 ? sum / std::sqrt(squares) : 0.0;
+}
+
+// candidates: from many materials to one.
+std::size_t fewest_that_predict(const std::vector<Candidate>& candidates) {
+  SquaredError scale{1e-300, 1e-300};
+  for (const SquaredError& error : candidates.back().errors) scale += error;
+  std::vector<std::vector<double>> errors;
+  std::size_t best = 0;
+  std::vector<double> totals;
+  for (const Candidate& candidate : candidates) {
+    errors.push_back(relative_errors(candidate, scale));
+    totals.push_back(std::accumulate(errors.back().begin(), errors.back().end(), 0.0));
+    if (totals.back() < totals[best]) best = totals.size() - 1;
+  }
+  for (std::size_t i = candidates.size(); i-- > best;) {
+    if (mean_excess_in_standard_errors(errors[i], errors[best]) <= kStandardErrors) return i;
+  }
+  return best;
+}
+
+void merge_until(int materials, bool stop_where_needed, Mixture& mixture, const Observations& observations,
+                 const LumitexelList& lumitexels, const MaterialFitOptions& fit, const std::function<void(int)>& after) {
+  Responsibilities r = responsibilities(mixture, observations, lumitexels);
+  while (static_cast<int>(mixture.materials.size()) > std::max(1, materials)) {
+    const Merge merge = cheapest_merge(mixture, observations, lumitexels, r, fit);
+    if (stop_where_needed && merge.needed_apart) break;
+    apply(merge, mixture);
+    r = maximise_expectation(mixture, observations, lumitexels, fit, kRounds);
+    after(static_cast<int>(mixture.materials.size()));
+  }
+}
+
 }  // namespace
 
 Responsibilities merge_materials(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
                                  const MergeOptions& options, const std::function<void(int)>& report) {
-  Responsibilities r = maximise_expectation(mixture, observations, lumitexels, options.fit, 2 * kRounds);
-  while (static_cast<int>(mixture.materials.size()) > std::max(1, options.materials)) {
-    const Merge merge = cheapest_merge(mixture, observations, lumitexels, r, options.fit);
-    if (options.materials == 0 && merge.needed_apart) break;
-    apply(merge, mixture);
-    r = maximise_expectation(mixture, observations, lumitexels, options.fit, kRounds);
-    report(static_cast<int>(mixture.materials.size()));
+  maximise_expectation(mixture, observations, lumitexels, options.fit, 2 * kRounds);
+  const bool chosen = options.materials == 0;
+  if (chosen && !options.fit.estimate_error) {
+    const double clip = clip_level(observations, lumitexels);
+    std::vector<Candidate> candidates{{mixture, left_out_errors(mixture, observations, lumitexels, clip)}};
+    merge_until(1, false, mixture, observations, lumitexels, options.fit, [&](int left) {
+      candidates.push_back({mixture, left_out_errors(mixture, observations, lumitexels, clip)});
+      report(left);
+    });
+    mixture = candidates[fewest_that_predict(candidates)].mixture;
+  } else {
+    merge_until(options.materials, chosen, mixture, observations, lumitexels, options.fit, report);
   }
-  return r;
+  return responsibilities(mixture, observations, lumitexels);
 }
 
 }  // namespace lumitexel

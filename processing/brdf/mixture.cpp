@@ -62,6 +62,21 @@ double normalise(double* log_probability, std::size_t count) {
 
 }  // namespace
 
+LumitexelList thinned(const LumitexelList& list, std::size_t most) {
+  const std::size_t stride = std::max<std::size_t>(1, (list.size() + most - 1) / std::max<std::size_t>(1, most));
+  LumitexelList some;
+  for (std::size_t k = 0; k < list.size(); k += stride) some.push_back(list[k]);
+  return some;
+}
+
+LumitexelList with_samples(const Observations& observations) {
+  LumitexelList some;
+  for (std::size_t i = 0; i < observations.lumitexels(); ++i) {
+    if (!observations.of(i).empty()) some.push_back(i);
+  }
+  return some;
+}
+
 Responsibilities responsibilities(const Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels) {
   const std::size_t count = mixture.materials.size();
   Responsibilities r{count, std::vector<double>(lumitexels.size() * count), std::vector<double>(lumitexels.size() * count), 0.0};

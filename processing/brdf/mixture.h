@@ -28,6 +28,11 @@ struct Responsibilities {
 
 using LumitexelList = std::vector<std::size_t>;  // indices into Observations, ascending
 
+// Every so manieth, so that at most `most` remain.
+LumitexelList thinned(const LumitexelList& list, std::size_t most);
+// Those with at least one sample.
+LumitexelList with_samples(const Observations& observations);
+
 Responsibilities responsibilities(const Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels);
 
 // Samples of the lumitexels that may belong to material k, with their shares.

@@ -7,6 +7,9 @@
 namespace lumitexel {
 namespace {
 
+// A basis that is nearly dark in all samples (1e-9 of the brightest one) would need a weight without bound to explain anything.
+constexpr double kNoInformation = 1e-18;
+
 // Unconstrained optimum over the free unknowns; the others are zero.
 BasisVector solve_free(const BasisMatrix& matrix, const BasisVector& right, unsigned free) {
   const Eigen::Index n = right.size();
@@ -25,10 +28,11 @@ BasisVector solve_free(const BasisMatrix& matrix, const BasisVector& right, unsi
 // The held unknown whose growth lowers the cost fastest; -1 if none does.
 int steepest_held(const BasisMatrix& matrix, const BasisVector& right, const NnlsSolution& solution) {
   const BasisVector gain = right - matrix * solution.weights;
+  const double largest = matrix.diagonal().maxCoeff();
   int best = -1;
   double best_gain = 0.0;
   for (int i = 0; i < static_cast<int>(right.size()); ++i) {
-    if (solution.free >> i & 1u || !(matrix(i, i) > 0.0)) continue;
+    if (solution.free >> i & 1u || !(matrix(i, i) > kNoInformation * largest)) continue;
     // Scaled by the unknown's own curvature, so that the unit of a basis does not matter.
     const double scaled = gain[i] / std::sqrt(matrix(i, i));
     const double noise = 1e-12 * std::abs(right[i]) / std::sqrt(matrix(i, i));

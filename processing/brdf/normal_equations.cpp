@@ -1,45 +1,15 @@
 #include "processing/brdf/normal_equations.h"
 
+#include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
+#include "processing/brdf/brdf_slopes.h"
 #include "processing/brdf/ordered_sum.h"
 
 namespace lumitexel {
-namespace {
-
-constexpr int kMaxLobes = 3;
-constexpr int kMaxParameters = kMaxChannels * (1 + 3 * kMaxLobes);
-using SampleJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxChannels, kMaxParameters>;
-using SampleResidual = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxChannels, 1>;
-
-// Prediction of r per channel, and its derivatives, before any weighting.
-void predict(const BrdfParameters& layout, const Eigen::VectorXd& at, const LobeGeometry& geometry, SampleResidual& value,
-             SampleJacobian& slope) {
-  const double cos_i = geometry.cos_i;
-  slope.setZero();
-  for (int c = 0; c < layout.channels(); ++c) {
-    value[c] = cos_i * at[layout.diffuse(c)];
-    slope(c, layout.diffuse(c)) = cos_i;
-  }
-  const LobeFamily& family = layout.family();
-  for (int l = 0; l < layout.lobes(); ++l) {
-    LobeSlopes terms;
-    for (int c = 0; c < layout.channels(); ++c) {
-      const int shape = layout.log_shape(l, c), aim = layout.aim(l, c);
-      if (c == 0 || !layout.shared_shape()) terms = family.slopes(at[shape], family.aims ? at[aim] : kMirrorAim, geometry);
-      const double strength = cos_i * std::exp(at[layout.log_strength(l, c)]);
-      value[c] += strength * terms.gain + cos_i * terms.offset;
-      slope(c, layout.log_strength(l, c)) = strength * terms.gain;
-      slope(c, shape) = strength * terms.gain_by_shape + cos_i * terms.offset_by_shape;
-      if (family.aims) slope(c, aim) = strength * terms.gain_by_aim;
-    }
-  }
-}
-
-}  // namespace
-
-BrdfProblem::BrdfProblem(FitSamples samples, const BrdfParameters& layout, const ErrorModel& error)
-    : samples_(samples), layout_(layout), error_(error), weights_(samples.size()) {}
+BrdfProblem::BrdfProblem(FitSamples samples, const BrdfParameters& layout, const ErrorModel& error, bool robust)
+    : samples_(samples), layout_(layout), error_(error), robust_(robust), weights_(samples.size()) {}
 
 void BrdfProblem::reweight(const Eigen::VectorXd& at) {
   const Brdf model = layout_.brdf(at);
@@ -50,7 +20,7 @@ void BrdfProblem::reweight(const Eigen::VectorXd& at) {
     for (std::size_t c = 0; c < static_cast<std::size_t>(layout_.channels()); ++c) {
       weights_[s].inverse_scale[c] = 1.0 / std::sqrt(error_.variance(predicted[c], static_cast<double>(sample.variance[c])));
     }
-    weights_[s].root = std::sqrt(samples_[s].share * robust_weight(error_, misfit, layout_.channels()));
+    weights_[s].root = std::sqrt(samples_[s].share * (robust_ ? robust_weight(error_, misfit, layout_.channels()) : 1.0));
   });
 }
 
@@ -67,7 +37,7 @@ double BrdfProblem::cost(const Eigen::VectorXd& at) const {
   return ordered_sum(samples_.size(), 0.0, [&](std::size_t s, double& sum) {
     const Observation& sample = *samples_[s].observation;
     const ChannelValues predicted = predicted_reflectance(model, sample.geometry);
-    SampleResidual residual(channels);
+    SampleValues residual(channels);
     for (int c = 0; c < channels; ++c) {
       const auto channel = static_cast<std::size_t>(c);
       residual[c] = weights_[s].root * weights_[s].inverse_scale[channel] *
@@ -80,9 +50,9 @@ double BrdfProblem::cost(const Eigen::VectorXd& at) const {
 
 void BrdfProblem::add(const Eigen::VectorXd& at, std::size_t s, NormalEquations& sums) const {
   const Observation& sample = *samples_[s].observation;
-  SampleResidual residual(layout_.channels());
-  SampleJacobian slope(layout_.channels(), layout_.size());
-  predict(layout_, at, sample.geometry, residual, slope);
+  SampleValues residual(layout_.channels());
+  SampleSlopes slope(layout_.channels(), layout_.size());
+  predict_with_slopes(layout_, at, sample.geometry, residual, slope);
   for (int c = 0; c < layout_.channels(); ++c) {
     const auto channel = static_cast<std::size_t>(c);
     const double scale = weights_[s].root * weights_[s].inverse_scale[channel];
@@ -107,6 +77,21 @@ NormalEquations BrdfProblem::linearise(const Eigen::VectorXd& at) const {
       [&](std::size_t s, NormalEquations& block) { add(at, s, block); });
   sums.matrix = sums.matrix.selfadjointView<Eigen::Lower>();
   return sums;
+}
+
+Eigen::VectorXd damped_step(const NormalEquations& equations, const std::vector<bool>& held, double damping) {
+  Eigen::MatrixXd matrix = equations.matrix;
+  Eigen::VectorXd right = -equations.gradient;
+  const double smallest = 1e-14 * std::max(1e-300, matrix.diagonal().maxCoeff());
+  for (int i = 0; i < matrix.rows(); ++i) {
+    matrix(i, i) += damping * matrix(i, i) + smallest;
+    if (!held[static_cast<std::size_t>(i)]) continue;
+    matrix.row(i).setZero();
+    matrix.col(i).setZero();
+    matrix(i, i) = 1.0;
+    right[i] = 0.0;
+  }
+  return matrix.ldlt().solve(right);
 }
 
 NormalEquations& operator+=(NormalEquations& a, const NormalEquations& b) {

@@ -18,9 +18,12 @@ struct NormalEquations {
 
 NormalEquations& operator+=(NormalEquations& a, const NormalEquations& b);
 
+// Solves (J^T J + damping * diagonal) step = -gradient over the parameters that are not held.
+Eigen::VectorXd damped_step(const NormalEquations& equations, const std::vector<bool>& held, double damping);
+
 class BrdfProblem {
  public:
-  BrdfProblem(FitSamples samples, const BrdfParameters& layout, const ErrorModel& error);
+  BrdfProblem(FitSamples samples, const BrdfParameters& layout, const ErrorModel& error, bool robust);
 
   // Freezes scales and robust weights at the given parameters.
   void reweight(const Eigen::VectorXd& at);
@@ -38,6 +41,7 @@ class BrdfProblem {
   FitSamples samples_;
   const BrdfParameters& layout_;
   const ErrorModel& error_;
+  bool robust_;
   std::vector<SampleWeight> weights_;
 };
 

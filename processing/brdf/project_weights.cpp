@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "processing/brdf/texel_system.h"
 
 namespace lumitexel {
 namespace {
@@ -13,92 +14,6 @@ namespace {
 constexpr std::size_t kMostTried = 1500;  // lumitexels that the choice of the prior looks at
 constexpr double kDiffuseWidths[] = {0.05, 0.1, 0.2, 0.4, 0.8};
 constexpr double kGlossWidths[] = {0.01, 0.03, 0.1, 0.3, 1.0};
-// A weak pull on every weight, so that bases that look alike share what neither data nor prior tell apart.
-constexpr double kWeightWidth = 2.0;
-// Relative to at least this reflectance (1/sr): a metal has no diffuse light to vary by a fraction of.
-constexpr double kFaintest = 0.01;
-constexpr LobeGeometry kDiffuseGeometry = geometry_of_cosines(1.0, 0.7071067811865476, 0.7071067811865476);  // wi = wo, 45 degrees
-constexpr LobeGeometry kGlossGeometry = geometry_of_cosines(0.5, 0.8660254037844387, 0.8660254037844387); // mirror, 30 degrees
-
-using SamplePredictions = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxChannels, kMaxBasis>;  // channels x bases
-using SampleValues = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxChannels, 1>;
-
-struct SampleEquations {  // of one sample, a row a channel: as measured, and whitened by the error model at the material's prediction
-  SamplePredictions predicted, whitened;
-  SampleValues measured, target;
-};
-
-struct TexelSystem {
-  std::vector<SampleEquations> samples;
-  BasisMatrix matrix;
-  BasisVector right;
-};
-
-SampleEquations equations_of(const Observation& sample, int channels, const std::vector<Brdf>& basis, const ErrorModel& error) {
-  SampleEquations equations{SamplePredictions(channels, basis.size()), {}, SampleValues(channels), {}};
-  SampleValues inverse_scale(channels);
-  for (std::size_t k = 0; k < basis.size(); ++k) {
-    const ChannelValues values = predicted_reflectance(basis[k], sample.geometry);
-    for (int c = 0; c < channels; ++c) equations.predicted(c, static_cast<Eigen::Index>(k)) = values[static_cast<std::size_t>(c)];
-  }
-  for (int c = 0; c < channels; ++c) {
-    const auto channel = static_cast<std::size_t>(c);
-    equations.measured[c] = static_cast<double>(sample.reflectance[channel]);
-    inverse_scale[c] = 1.0 / std::sqrt(error.variance(equations.predicted(c, 0), static_cast<double>(sample.variance[channel])));
-  }
-  equations.whitened = inverse_scale.asDiagonal() * equations.predicted;
-  equations.target = inverse_scale.cwiseProduct(equations.measured);
-  if (error.whitening().size() > 0) {
-    equations.whitened = (error.whitening() * equations.whitened).eval();
-    equations.target = (error.whitening() * equations.target).eval();
-  }
-  return equations;
-}
-
-TexelSystem system_of(std::span<const Observation> samples, int channels, const std::vector<Brdf>& basis, const ErrorModel& error) {
-  const auto n = static_cast<Eigen::Index>(basis.size());
-  TexelSystem system{{}, BasisMatrix::Zero(n, n), BasisVector::Zero(n)};
-  for (const Observation& sample : samples) {
-    const SampleEquations equations = equations_of(sample, channels, basis, error);
-    system.matrix += equations.whitened.transpose() * equations.whitened;
-    system.right += equations.whitened.transpose() * equations.target;
-    system.samples.push_back(equations);
-  }
-  return system;
-}
-
-// Precision of the prior on the weights; its mean is (1, 0, 0, …), the material itself.
-class PriorPrecision {
- public:
-  PriorPrecision(const std::vector<Brdf>& basis, int channels)
-      : diffuse_(gram(basis, channels, kDiffuseGeometry)), gloss_(gram(basis, channels, kGlossGeometry)) {}
-
-  void add_to(const TexelPrior& prior, BasisMatrix& matrix, BasisVector& right) const {
-    if (std::isinf(prior.diffuse_width) && std::isinf(prior.gloss_width)) return;
-    BasisMatrix precision = diffuse_ / (prior.diffuse_width * prior.diffuse_width) +
-                            gloss_ / (prior.gloss_width * prior.gloss_width);
-    precision.diagonal().array() += 1.0 / (kWeightWidth * kWeightWidth);
-    matrix += precision;
-    right += precision.col(0);
-  }
-
- private:
-  // Mean over channels of b b^T, b the bases' reflectances relative to the material's at one geometry.
-  static BasisMatrix gram(const std::vector<Brdf>& basis, int channels, const LobeGeometry& geometry) {
-    const auto n = static_cast<Eigen::Index>(basis.size());
-    BasisMatrix sum = BasisMatrix::Zero(n, n);
-    for (int c = 0; c < channels; ++c) {
-      const double own = std::max(kFaintest, evaluate(basis[0], c, geometry));
-      BasisVector relative(n);
-      for (Eigen::Index k = 0; k < n; ++k) relative[k] = evaluate(basis[static_cast<std::size_t>(k)], c, geometry) / own;
-      sum += relative * relative.transpose() / channels;
-    }
-    return sum;
-  }
-
-  BasisMatrix diffuse_, gloss_;
-};
-
 bool nothing_varies(const TexelPrior& prior) { return prior.diffuse_width <= 0.0 && prior.gloss_width <= 0.0; }
 
 BasisVector material_alone(Eigen::Index n) {
@@ -161,7 +76,7 @@ double tempered(double squares, int channels) {
 // Adds the cost of each sample of the texel, predicted from the others, per candidate.
 void leave_one_out(std::span<const Observation> samples, int channels, const std::vector<Brdf>& basis,
                    const ErrorModel& error, const Candidates& candidates, std::vector<LeftOut>& sums) {
-  const TexelSystem system = system_of(samples, channels, basis, error);
+  const TexelSystem system = texel_system(samples, channels, basis, basis[0], error);
   for (const SampleEquations& left_out : system.samples) {
     const BasisMatrix matrix = system.matrix - left_out.whitened.transpose() * left_out.whitened;
     const BasisVector right = system.right - left_out.whitened.transpose() * left_out.target;
@@ -189,7 +104,7 @@ TexelWeights project_texel(std::span<const Observation> samples, int channels, c
   result.weight[0] = 1.0f;
   result.relative_sigma = static_cast<float>(samples.empty() ? 1.0 : error.relative);
   if (samples.empty() || nothing_varies(prior)) return result;
-  const TexelSystem system = system_of(samples, channels, basis, error);
+  const TexelSystem system = texel_system(samples, channels, basis, basis[0], error);
   BasisMatrix matrix = system.matrix;
   BasisVector right = system.right;
   PriorPrecision(basis, channels).add_to(prior, matrix, right);

@@ -23,13 +23,6 @@ struct Split {
   double gain = 0;  // of log likelihood, over all members
 };
 
-LumitexelList thinned(const LumitexelList& list, std::size_t most) {
-  const std::size_t stride = (list.size() + most - 1) / most;
-  LumitexelList some;
-  for (std::size_t i = 0; i < list.size(); i += std::max<std::size_t>(1, stride)) some.push_back(list[i]);
-  return some;
-}
-
 // r: of the material alone.
 Brdf fit_of_worst(const MaterialModel& model, const Observations& observations, const LumitexelList& members,
                   const Responsibilities& r, const MaterialFitOptions& options) {

@@ -8,6 +8,8 @@
 #include "drivers/error.h"
 #include "processing/brdf/cluster_materials.h"
 #include "processing/brdf/material_basis.h"
+#include "processing/brdf/paper_clustering.h"
+#include "processing/brdf/principal_functions.h"
 #include "processing/brdf/select_lumitexels.h"
 #include "processing/model/fill_atlas.h"
 #include "processing/model/observe.h"
@@ -33,35 +35,57 @@ ErrorModel error_model(const Observations& observations, const FitOptions& optio
   return error;
 }
 
+ClusterOptions cluster_options(const FitOptions& options, const ErrorModel& error) {
+  ClusterOptions cluster;
+  cluster.errors = options.errors;
+  cluster.materials = options.materials;
+  cluster.final_lumitexels = options.final_lumitexels;
+  cluster.fit.family = options.family;
+  cluster.fit.most_lobes = options.most_lobes;
+  cluster.fit.shared_shape = options.shared_lobe_shape;
+  cluster.fit.error = error;
+  return cluster;
+}
+
 Clustering learn_materials(const Observations& observations, const FitOptions& options, const ErrorModel& error,
                            Progress& progress) {
-  progress.begin("materials", options.materials, "materials");
-  ClusterOptions cluster_options;
-  cluster_options.materials = options.materials;
-  cluster_options.fit.shared_shape = options.shared_lobe_shape;
-  cluster_options.final_lumitexels = options.final_lumitexels;
-  cluster_options.fit.error = error;
+  const int wanted = options.materials > 0 ? options.materials : kMostMaterials;
+  progress.begin("materials", wanted, "materials");
   const auto selection = select_lumitexels(observations, options.learning_lumitexels);
   if (selection.empty()) {
     throw Error("fit: no surface point has " + std::to_string(kFewestSamples) +
                 " samples; more views or more light on the object are needed");
   }
-  return cluster_materials(observations, selection, cluster_options, [&](int found) { progress.update(found); });
+  const auto report = [&](int found) { progress.update(std::min(found, wanted)); };
+  if (options.method == FitMethod::Paper) {
+    const PaperOptions paper{options.materials, options.most_lobes, options.intensity_weight, options.final_lumitexels};
+    return paper_clustering(observations, selection, paper, report);
+  }
+  return cluster_materials(observations, selection, cluster_options(options, error), report);
+}
+
+std::vector<LumitexelList> members_of(const Clustering& clustering) {
+  std::vector<LumitexelList> members(clustering.materials.size());
+  for (std::size_t i = 0; i < clustering.label.size(); ++i) members[static_cast<std::size_t>(clustering.label[i])].push_back(i);
+  return members;
+}
+
+PriorChoice prior_for(const Observations& observations, const LumitexelList& members, const std::vector<Brdf>& basis,
+                      const ErrorModel& error, const FitOptions& options) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (options.plain_projection) return {{kInfinity, kInfinity}, 0.0, 0.0, 0};
+  return choose_prior(observations, members, basis, error);
 }
 
 std::vector<TexelWeights> project_all(const Observations& observations, const Clustering& clustering, const Model& model,
                                       const FitOptions& options, FitSummary& summary, Progress& progress) {
-  const std::vector<int>& label = clustering.label;
-  std::vector<std::vector<std::size_t>> members(model.materials.size());
-  for (std::size_t i = 0; i < label.size(); ++i) members[static_cast<std::size_t>(label[i])].push_back(i);
-  std::vector<TexelWeights> weights(label.size());
+  const std::vector<LumitexelList> members = members_of(clustering);
+  std::vector<TexelWeights> weights(clustering.label.size());
   progress.begin("texel weights", static_cast<std::int64_t>(model.materials.size()), "materials");
   for (std::size_t j = 0; j < members.size(); ++j) {
     const auto& basis = model.materials[j].basis;
     const ErrorModel& error = clustering.materials[j].model.error;
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    summary.prior.push_back(options.plain_projection ? PriorChoice{{kInfinity, kInfinity}, 0.0, 0.0, 0}
-                                                     : choose_prior(observations, members[j], basis, error));
+    summary.prior.push_back(prior_for(observations, members[j], basis, error, options));
     const TexelPrior prior = summary.prior.back().prior;
     oneapi::tbb::parallel_for(std::size_t{0}, members[j].size(), [&](std::size_t k) {
       const std::size_t i = members[j][k];
@@ -72,6 +96,24 @@ std::vector<TexelWeights> project_all(const Observations& observations, const Cl
     progress.update(static_cast<std::int64_t>(j + 1));
   }
   return weights;
+}
+
+// Each material's basis moved by principal function analysis, if samples that were left out are then predicted better.
+void move_bases(const Observations& observations, const Clustering& clustering, const FitOptions& options, const FitSummary& summary,
+                Model& model, Progress& progress) {
+  const std::vector<LumitexelList> members = members_of(clustering);
+  progress.begin("basis functions", static_cast<std::int64_t>(members.size()), "materials");
+  for (std::size_t j = 0; j < members.size(); ++j) {
+    const MaterialModel& material = clustering.materials[j].model;
+    PrincipalOptions principal;
+    principal.most_lumitexels = options.final_lumitexels;
+    principal.prior = summary.prior[j].prior;
+    principal.fit = cluster_options(options, material.error).fit;
+    const auto moved = principal_functions(observations, members[j], model.materials[j].basis, material.error, principal);
+    const PriorChoice choice = prior_for(observations, members[j], moved.basis, material.error, options);
+    if (options.plain_projection || choice.left_out_error < summary.prior[j].left_out_error) model.materials[j].basis = moved.basis;
+    progress.update(static_cast<std::int64_t>(j + 1));
+  }
 }
 
 void set_materials(const Clustering& clustering, const Atlas& atlas, const LumitexelSet& lumitexels,
@@ -111,10 +153,18 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
   const ErrorModel error = error_model(observations, options);
   summary.error = error;
   const Clustering clustering = learn_materials(observations, options, error, progress);
+  summary.estimated_errors = clustering.estimated_errors;
   set_materials(clustering, atlas, gathered.set, observations, model);
 
   timer.begin("projection");
-  const auto weights = project_all(observations, clustering, model, options, summary, progress);
+  auto weights = project_all(observations, clustering, model, options, summary, progress);
+  if (options.principal_functions) {
+    timer.begin("principal functions");
+    move_bases(observations, clustering, options, summary, model, progress);
+    summary.prior.clear();
+    summary.texels_by_material.clear();
+    weights = project_all(observations, clustering, model, options, summary, progress);
+  }
 
   timer.begin("model");
   summary.single = stage_error(model, FitStage::Single, observations, clustering.label, weights);

@@ -16,7 +16,8 @@ namespace lumitexel {
 struct FitSummary {
   std::size_t lumitexels = 0, samples = 0, unseen_triangles = 0, starved = 0;  // starved: lumitexels without samples
   RejectionCounts rejected;
-  ErrorModel error;                  // that the fit assumed
+  ErrorModel error;                  // that the fit started from, or was given
+  bool estimated_errors = false;     // whether materials' own error models took its place
   std::vector<std::size_t> texels_by_material;
   std::vector<PriorChoice> prior;    // per material
   StageError single, cluster, projection;

@@ -4,11 +4,24 @@
 #include <cstddef>
 #include <string>
 
+#include "processing/brdf/cluster_materials.h"
+
 namespace lumitexel {
+
+enum class FitMethod {
+  Lumitexel,  // ours
+  Paper       // as published (paper_clustering.h), with the plain projection
+};
 
 struct FitOptions {
   std::string quality = "standard";
-  int materials = 4;
+  FitMethod method = FitMethod::Lumitexel;
+  int materials = 4;                        // 0: as many as the samples ask for
+  BrdfFamily family = BrdfFamily::Lafortune;
+  int most_lobes = 1;                       // each must be asked for by the samples; with the paper's method it is the number
+  bool principal_functions = true;          // tried for each material, and kept where left-out samples are predicted better
+  ErrorSource errors = ErrorSource::Auto;
+  double intensity_weight = 0.3;            // s of the paper's eq. 6; only the paper's method looks at it
   std::size_t learning_lumitexels = 10000;  // that the materials are learnt on
   std::size_t final_lumitexels = 5000;      // of its own that each material is fitted to at the end
   bool shared_lobe_shape = true;            // one lobe shape for all channels of a material

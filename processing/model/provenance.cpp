@@ -43,11 +43,16 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
   json object;
   object["session_key"] = session.key;
   object["options"] = {{"quality", options.quality},
+                       {"method", options.method == FitMethod::Paper ? "paper" : "lumitexel"},
+                       {"family", to_string(options.family)},
+                       {"most_lobes", options.most_lobes},
+                       {"principal_functions", options.principal_functions},
                        {"materials", options.materials},
                        {"learning_lumitexels", options.learning_lumitexels},
                        {"final_lumitexels", options.final_lumitexels},
                        {"shared_lobe_shape", options.shared_lobe_shape},
                        {"plain_projection", options.plain_projection},
+                       {"estimated_errors", summary.estimated_errors},
                        {"relative_error", summary.error.relative},
                        {"error_floor", summary.error.floor}};
   object["materials"] = summary.texels_by_material.size();

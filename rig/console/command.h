@@ -39,6 +39,7 @@ void add_replay_command(CLI::App& app, CommandAction& action);
 void add_import_command(CLI::App& app, CommandAction& action);
 void add_calibrate_command(CLI::App& app, CommandAction& action);
 void add_fit_command(CLI::App& app, CommandAction& action);
+void add_experiment_command(CLI::App& app, CommandAction& action);
 void add_render_command(CLI::App& app, CommandAction& action);
 void add_evaluate_command(CLI::App& app, CommandAction& action);
 void add_report_command(CLI::App& app, CommandAction& action);

@@ -1,3 +1,4 @@
+#include <charconv>
 #include <cstdio>
 #include <memory>
 
@@ -13,24 +14,52 @@ namespace {
 constexpr int kMostMaterials = 64;
 
 struct FitSettings {
-  std::string session, out, quality = "standard", materials = "4";
-  bool separate_lobes = false, plain_projection = false;
+  std::string session, out, quality = "standard", materials = "4", method = "lumitexel", family = "lafortune", errors = "auto";
+  int lobes = 1;
+  double intensity_weight = 0.3;
+  bool separate_lobes = false, plain_projection = false, no_principal_functions = false;
 };
+
+constexpr std::pair<const char*, FitMethod> kMethods[] = {{"lumitexel", FitMethod::Lumitexel}, {"paper", FitMethod::Paper}};
+constexpr std::pair<const char*, ErrorSource> kErrors[] = {
+    {"auto", ErrorSource::Auto}, {"given", ErrorSource::Given}, {"estimated", ErrorSource::Estimated}};
+
+template <typename Value, std::size_t kCount>
+Value named(const char* option, const std::string& name, const std::pair<const char*, Value> (&known)[kCount]) {
+  std::string expected;
+  for (const auto& [word, value] : known) {
+    if (name == word) return value;
+    expected += (expected.empty() ? "" : " or ") + std::string(word);
+  }
+  throw BadInput(option, "'" + name + "'", expected);
+}
+
+int materials_wanted(const std::string& text) {
+  if (text == "auto") return 0;
+  int count = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  if (error != std::errc() || end != text.data() + text.size() || count < 1 || count > kMostMaterials) {
+    throw BadInput("--materials", "'" + text + "'", "a whole number from 1 to 64, or auto");
+  }
+  return count;
+}
 
 FitOptions fit_options(const FitSettings& settings) {
   FitOptions options = FitOptions::preset(settings.quality);
-  try {
-    std::size_t used = 0;
-    options.materials = std::stoi(settings.materials, &used);
-    if (used != settings.materials.size()) throw std::invalid_argument(settings.materials);
-  } catch (const std::exception&) {
-    throw BadInput("--materials", "'" + settings.materials + "'", "a whole number from 1 to 64");
-  }
-  if (options.materials < 1 || options.materials > kMostMaterials) {
-    throw BadInput("--materials", settings.materials, "a whole number from 1 to 64");
-  }
+  options.materials = materials_wanted(settings.materials);
+  options.method = named("--method", settings.method, kMethods);
+  options.family = brdf_family_from_string(settings.family);
+  options.errors = named("--errors", settings.errors, kErrors);
+  options.most_lobes = settings.lobes;
+  options.intensity_weight = settings.intensity_weight;
+  options.principal_functions = !settings.no_principal_functions;
   options.shared_lobe_shape = !settings.separate_lobes;
   options.plain_projection = settings.plain_projection;
+  if (options.method == FitMethod::Paper) {
+    if (options.materials == 0) throw BadInput("--materials", "auto with --method paper", "a number: the paper does not choose it");
+    options.shared_lobe_shape = false;
+    options.plain_projection = true;
+  }
   return options;
 }
 
@@ -90,7 +119,24 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
                       "draft: materials learnt on 2,000 surface points and fitted to 2,000 each; standard: 10,000 and 5,000; "
                       "reference: all")
       ->capture_default_str();
-  command->add_option("--materials", settings->materials, "How many materials to look for, 1 to 64")->capture_default_str();
+  command->add_option("--materials", settings->materials, "How many materials to look for, 1 to 64, or auto: as many as the samples ask for")->capture_default_str();
+  command->add_option("--method", settings->method,
+                      "lumitexel, or paper: clustering, fits and projection as published (Lensch et al. 2003), for comparison")
+      ->capture_default_str();
+  command->add_option("--family", settings->family, "Lobes of this family: lafortune, ggx or ward")->capture_default_str();
+  command->add_option("--lobes", settings->lobes, "Most lobes of a material; each must be asked for by its samples")
+      ->check(CLI::Range(0, 3))
+      ->capture_default_str();
+  command->add_option("--errors", settings->errors,
+                      "What a fit takes for noise. estimated: what each material's residuals say; given: 30 % of each prediction "
+                      "and of the median; auto: estimated, unless that predicts left-out samples worse")
+      ->capture_default_str();
+  command->add_flag("--no-principal-functions", settings->no_principal_functions,
+                    "Leave the basis BRDFs as clustering made them, even where moving them predicts left-out samples better");
+  command->add_option("--intensity-weight", settings->intensity_weight,
+                      "Of the paper's method: what intensity counts beside colour when materials are told apart")
+      ->check(CLI::Range(1e-3, 1.0))
+      ->capture_default_str();
   command->add_flag("--separate-lobes", settings->separate_lobes,
                     "Give every colour channel a lobe shape of its own, as the paper does, instead of one for all");
   command->add_flag("--plain-projection", settings->plain_projection,

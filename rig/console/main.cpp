@@ -24,6 +24,7 @@ const std::vector<void (*)(CLI::App&, CommandAction&)> kCommands = {
     add_import_command,
     add_calibrate_command,
     add_fit_command,
+    add_experiment_command,
     add_render_command,
     add_evaluate_command,
     add_report_command,

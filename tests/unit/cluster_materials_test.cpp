@@ -54,7 +54,7 @@ TEST(ClusterMaterials, FindsUnevenMaterialsAndLabelsTheirTexels) {
       right += *best;
       const Brdf& truth = scene.truth[static_cast<std::size_t>(best - votes[j].begin())];
       // 5 % noise over at least 100 x 6 x 3 samples leaves well under 2 % in N.
-      EXPECT_NEAR(found.materials[j].brdf.lobes[0][0].log_exponent, truth.lobes[0][0].log_exponent, 0.06) << seed;
+      EXPECT_NEAR(found.materials[j].model.brdf.lobes[0][0].log_shape, truth.lobes[0][0].log_shape, 0.06) << seed;
     }
     EXPECT_GE(right / static_cast<double>(found.label.size()), kFewestRight) << seed;
   }
@@ -66,8 +66,8 @@ TEST(ClusterMaterials, TheSingleBrdfIsOneFitToEverything) {
   const Clustering found = cluster(scene.observations, 1);
   double single = 0, material = 0;
   for (std::size_t i = 0; i < found.label.size(); ++i) {
-    single += misfit(found.single, scene.observations.of(i), {0.05, 1e-3});
-    material += misfit(found.materials[0].brdf, scene.observations.of(i), {0.05, 1e-3});
+    single += misfit(found.single.brdf, scene.observations.of(i), {0.05, 1e-3});
+    material += misfit(found.materials[0].model.brdf, scene.observations.of(i), {0.05, 1e-3});
   }
   EXPECT_NEAR(single / material, 1.0, 1e-3);
 }
@@ -79,8 +79,8 @@ TEST(ClusterMaterials, ResultsDoNotDependOnTheNumberOfThreads) {
   const Clustering one = cluster(scene.observations, 3);
   EXPECT_EQ(many.label, one.label);
   for (std::size_t j = 0; j < 3; ++j) {
-    EXPECT_EQ(many.materials[j].brdf.diffuse, one.materials[j].brdf.diffuse);
-    EXPECT_EQ(many.materials[j].brdf.lobes[0][0].log_exponent, one.materials[j].brdf.lobes[0][0].log_exponent);
+    EXPECT_EQ(many.materials[j].model.brdf.diffuse, one.materials[j].model.brdf.diffuse);
+    EXPECT_EQ(many.materials[j].model.brdf.lobes[0][0].log_shape, one.materials[j].model.brdf.lobes[0][0].log_shape);
   }
 }
 

@@ -12,7 +12,7 @@ Brdf lobe(double kd, double peak, double phi, double exponent) {
   Brdf brdf;
   brdf.channels = 1;
   brdf.diffuse = {kd};
-  brdf.lobes = {{Lobe{std::log(peak), phi, std::log(exponent)}}};
+  brdf.lobes = {{Lobe{std::log(peak), std::log(exponent), phi}}};
   return brdf;
 }
 
@@ -23,9 +23,9 @@ Eigen::Vector3d direction(double theta, double azimuth) {
 // The paper's form, (Cx (ux vx + uy vy) + Cz uz vz)^N in the local frame, in extended precision.
 long double paper_form(const Brdf& brdf, const Eigen::Vector3d& wi, const Eigen::Vector3d& wo) {
   const Lobe& l = brdf.lobes[0][0];
-  const long double exponent = std::exp(static_cast<long double>(l.log_exponent));
-  const long double sine = std::sin(static_cast<long double>(l.phi)), cosine = std::cos(static_cast<long double>(l.phi));
-  const long double s = std::exp(static_cast<long double>(l.log_peak) / exponent) /
+  const long double exponent = std::exp(static_cast<long double>(l.log_shape));
+  const long double sine = std::sin(static_cast<long double>(l.aim)), cosine = std::cos(static_cast<long double>(l.aim));
+  const long double s = std::exp(static_cast<long double>(l.log_strength) / exponent) /
                         std::max(std::abs(sine), std::abs(cosine));
   const long double base = -sine * s * (static_cast<long double>(wi.x()) * wo.x() + static_cast<long double>(wi.y()) * wo.y()) +
                            cosine * s * static_cast<long double>(wi.z()) * wo.z();

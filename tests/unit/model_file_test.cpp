@@ -23,9 +23,9 @@ Brdf odd_brdf(std::mt19937& random) {
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   Brdf brdf = diffuse_brdf(unit(random), unit(random), unit(random));
   auto& lobe = brdf.lobes.emplace_back();
-  for (auto& channel : lobe) channel = {10.0 * unit(random) - 5.0, unit(random), 15.0 * unit(random) - 4.0};
-  lobe[1].log_peak = -std::numeric_limits<double>::infinity();  // switched off
-  lobe[2].log_peak = 800.0;                                     // its exponential overflows
+  for (auto& channel : lobe) channel = {10.0 * unit(random) - 5.0, 15.0 * unit(random) - 4.0, unit(random)};
+  lobe[1].log_strength = -std::numeric_limits<double>::infinity();  // switched off
+  lobe[2].log_strength = 800.0;                                     // its exponential overflows
   return brdf;
 }
 
@@ -54,9 +54,9 @@ void expect_equal(const Brdf& a, const Brdf& b) {
   ASSERT_EQ(a.lobes.size(), b.lobes.size());
   for (std::size_t l = 0; l < a.lobes.size(); ++l) {
     for (std::size_t c = 0; c < kMaxChannels; ++c) {
-      EXPECT_EQ(a.lobes[l][c].log_peak, b.lobes[l][c].log_peak);
-      EXPECT_EQ(a.lobes[l][c].phi, b.lobes[l][c].phi);
-      EXPECT_EQ(a.lobes[l][c].log_exponent, b.lobes[l][c].log_exponent);
+      EXPECT_EQ(a.lobes[l][c].log_strength, b.lobes[l][c].log_strength);
+      EXPECT_EQ(a.lobes[l][c].aim, b.lobes[l][c].aim);
+      EXPECT_EQ(a.lobes[l][c].log_shape, b.lobes[l][c].log_shape);
     }
   }
 }

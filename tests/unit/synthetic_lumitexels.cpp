@@ -16,7 +16,7 @@ Brdf one_lobe(std::array<double, 3> diffuse, std::array<double, 3> peak, double 
   brdf.channels = 3;
   brdf.diffuse = diffuse;
   brdf.lobes.resize(1);
-  for (std::size_t c = 0; c < 3; ++c) brdf.lobes[0][c] = {std::log(peak[c]), phi, std::log(exponent)};
+  for (std::size_t c = 0; c < 3; ++c) brdf.lobes[0][c] = {std::log(peak[c]), std::log(exponent), phi};
   return brdf;
 }
 

@@ -1,0 +1,185 @@
+#include "processing/brdf/experiment/five_materials.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <random>
+
+#include "processing/brdf/normal_equations.h"
+
+namespace lumitexel {
+namespace {
+
+constexpr double kDiffuse[] = {0.15, 0.3, 0.1};
+constexpr double kExponents[] = {36.2, 42.2, 48.2, 54.2, 60.2};
+constexpr double kUnevenShares[] = {0.10, 0.55, 0.06, 0.25, 0.04};
+constexpr double kLeastCosine = 0.1, kLeastViewCosine = 0.42;
+
+// std::uniform_real_distribution differs between libraries; this does not.
+class Dice {
+ public:
+  explicit Dice(std::uint64_t seed) : engine_(seed) {}
+  double uniform(double low, double high) { return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
+  double normal() {
+    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform(0.0, 1.0)));
+    return radius * std::cos(2.0 * std::numbers::pi * uniform(0.0, 1.0));
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+Brdf material(double exponent) {
+  Brdf brdf;
+  auto& lobe = brdf.lobes.emplace_back();
+  for (std::size_t c = 0; c < 3; ++c) {
+    brdf.diffuse[c] = kDiffuse[c];
+    lobe[c] = {std::log((exponent + 2.0) / (2.0 * std::numbers::pi)), std::log(exponent), kMirrorAim};  // all energy alike
+  }
+  return brdf;
+}
+
+Eigen::Vector3d upward(Dice& dice, double least_cosine) {
+  const double z = dice.uniform(least_cosine, 1.0), turn = dice.uniform(0.0, 2.0 * std::numbers::pi), r = std::sqrt(1.0 - z * z);
+  return {r * std::cos(turn), r * std::sin(turn), z};
+}
+
+int draw_label(Dice& dice, int lumitexel, bool even) {
+  if (even) return lumitexel % 5;
+  double left = dice.uniform(0.0, 1.0);
+  for (int k = 0; k < 4; ++k) {
+    left -= kUnevenShares[k];
+    if (left < 0.0) return k;
+  }
+  return 4;
+}
+
+void measure(const Brdf& truth, const FiveMaterialsOptions& options, Dice& dice, Observation& sample) {
+  const double wrong = dice.uniform(0.0, 1.0) < options.outliers ? dice.uniform(0.0, 3.0) : 1.0;
+  const auto draw = [&] { return options.gaussian ? dice.normal() / std::numbers::sqrt3 : dice.uniform(-1.0, 1.0); };
+  double error = draw();
+  const ChannelValues exact = predicted_reflectance(truth, sample.geometry);
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (c > 0 && !options.channels_err_together) error = draw();
+    sample.reflectance[c] = static_cast<float>(exact[c] * (1.0 + options.noise * error) * wrong);
+  }
+}
+
+// The smallest errors that any unbiased estimator could have, for one material.
+struct Bound {
+  double log_exponent = 0;
+  std::array<double, 3> diffuse{};
+};
+
+Bound cramer_rao(const FiveMaterials& world, int k) {
+  std::vector<FitSample> samples;
+  for (std::size_t i = 0; i < world.label.size(); ++i) {
+    if (world.label[i] != k) continue;
+    for (const Observation& sample : world.observations.of(i)) samples.push_back({&sample, 1.0, static_cast<std::uint32_t>(i)});
+  }
+  const Brdf& truth = world.truth[static_cast<std::size_t>(k)];
+  const BrdfParameters layout(truth.family, 3, true, {widest_bounds(truth.family)});
+  ErrorModel error(world.relative_sigma, 1e-12);
+  error.freedom = ErrorModel::kGaussian;
+  BrdfProblem problem(samples, layout, error, false);
+  const Eigen::VectorXd at = layout.from(truth);
+  problem.reweight(at);
+  const Eigen::MatrixXd covariance = problem.linearise(at).matrix.inverse();
+  Bound bound;
+  bound.log_exponent = std::sqrt(covariance(layout.log_shape(0, 0), layout.log_shape(0, 0)));
+  for (int c = 0; c < 3; ++c) bound.diffuse[static_cast<std::size_t>(c)] = std::sqrt(covariance(layout.diffuse(c), layout.diffuse(c)));
+  return bound;
+}
+
+double bayes_accuracy(const FiveMaterials& world) {
+  Mixture mixture;
+  ErrorModel error(world.relative_sigma, 1e-6);
+  error.freedom = ErrorModel::kGaussian;
+  for (std::size_t k = 0; k < world.truth.size(); ++k) {
+    mixture.materials.push_back({world.truth[k], error});
+    mixture.share.push_back(static_cast<double>(std::count(world.label.begin(), world.label.end(), static_cast<int>(k))) /
+                            static_cast<double>(world.label.size()));
+  }
+  LumitexelList all(world.label.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const Responsibilities r = responsibilities(mixture, world.observations, all);
+  double right = 0.0;
+  for (std::size_t l = 0; l < all.size(); ++l) {
+    const double* begin = &r.probability[l * r.materials];
+    right += std::max_element(begin, begin + r.materials) - begin == world.label[l];
+  }
+  return right / static_cast<double>(all.size());
+}
+
+// Materials in the order of their exponents: which is whose. Matte ones come first.
+std::vector<std::size_t> by_exponent(const Clustering& clustering) {
+  std::vector<std::size_t> order(clustering.materials.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto exponent = [&](std::size_t k) {
+    const Brdf& brdf = clustering.materials[k].model.brdf;
+    return brdf.lobes.empty() ? -1e9 : brdf.lobes[0][0].log_shape;
+  };
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return exponent(a) < exponent(b); });
+  return order;
+}
+
+}  // namespace
+
+FiveMaterials make_five_materials(std::uint64_t seed, const FiveMaterialsOptions& options) {
+  Dice dice(seed * 7919 + 13);
+  FiveMaterials world;
+  world.observations.channels = 3;
+  world.relative_sigma = options.noise / std::numbers::sqrt3;
+  for (const double exponent : kExponents) world.truth.push_back(material(exponent));
+  std::array<Eigen::Vector3d, 5> views;
+  for (Eigen::Vector3d& view : views) view = upward(dice, kLeastViewCosine);
+  for (int i = 0; i < options.lumitexels; ++i) {
+    world.label.push_back(draw_label(dice, i, options.even));
+    for (int s = 0; s < options.samples_each; ++s) {
+      Observation sample;
+      const auto view = static_cast<std::size_t>(dice.uniform(0.0, 5.0));
+      sample.geometry = lobe_geometry(Eigen::Vector3d::UnitZ(), upward(dice, kLeastCosine), views[std::min<std::size_t>(view, 4)]);
+      measure(world.truth[static_cast<std::size_t>(world.label.back())], options, dice, sample);
+      world.observations.samples.push_back(sample);
+    }
+    world.observations.first.push_back(world.observations.samples.size());
+  }
+  return world;
+}
+
+FiveMaterialsScore score(const FiveMaterials& world, const Clustering& clustering) {
+  FiveMaterialsScore result;
+  result.found = static_cast<int>(clustering.materials.size());
+  result.bayes_accuracy = bayes_accuracy(world);
+  result.worst_exponent = result.worst_diffuse = std::numeric_limits<double>::infinity();
+  if (clustering.materials.size() != world.truth.size()) return result;
+  const std::vector<std::size_t> order = by_exponent(clustering);
+  std::vector<int> truth_of(order.size());
+  result.all_found = true;
+  result.worst_exponent = result.worst_diffuse = 0.0;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    truth_of[order[k]] = static_cast<int>(k);
+    const Brdf& fitted = clustering.materials[order[k]].model.brdf;
+    const Bound bound = cramer_rao(world, static_cast<int>(k));
+    const double exponent = fitted.lobes.empty() ? 0.0 : std::exp(fitted.lobes[0][0].log_shape);
+    const double half_gap = 0.5 * (kExponents[1] - kExponents[0]);
+    if (std::abs(exponent - kExponents[k]) > half_gap) result.all_found = false;
+    result.worst_exponent = std::max(result.worst_exponent, std::abs(exponent / kExponents[k] - 1.0));
+    result.squared_exponent += std::pow(std::log(std::max(1e-3, exponent) / kExponents[k]) / bound.log_exponent, 2) / 5.0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      result.worst_diffuse = std::max(result.worst_diffuse, std::abs(fitted.diffuse[c] / kDiffuse[c] - 1.0));
+      result.squared_diffuse += std::pow((fitted.diffuse[c] - kDiffuse[c]) / bound.diffuse[c], 2) / 15.0;
+    }
+  }
+  double right = 0.0;
+  for (std::size_t l = 0; l < world.label.size(); ++l) {
+    right += truth_of[static_cast<std::size_t>(clustering.label[l])] == world.label[l];
+  }
+  result.accuracy = right / static_cast<double>(world.label.size());
+  return result;
+}
+
+}  // namespace lumitexel

@@ -1,0 +1,91 @@
+#include "processing/brdf/left_out_error.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "processing/brdf/misfit.h"
+#include "processing/brdf/ordered_sum.h"
+
+namespace lumitexel {
+namespace {
+
+constexpr double kClipPercentile = 0.999;
+
+// exp(log_weight - max), normalised.
+void normalise(std::vector<double>& log_weight) {
+  const double most = *std::max_element(log_weight.begin(), log_weight.end());
+  double sum = 0.0;
+  for (double& w : log_weight) sum += w = std::exp(w - most);
+  for (double& w : log_weight) w /= sum;
+}
+
+SquaredError left_out_error(const Mixture& mixture, std::span<const Observation> samples, int channels, double clip) {
+  const std::size_t count = mixture.materials.size();
+  std::vector<ChannelValues> predicted(samples.size() * count);
+  std::vector<double> deviances(samples.size() * count), total(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const MaterialModel& material = mixture.materials[k];
+    const double constant = deviance_constant(material.error, channels);
+    for (std::size_t s = 0; s < samples.size(); ++s) {
+      predicted[s * count + k] = predicted_reflectance(material.brdf, samples[s].geometry);
+      const SampleMisfit misfit = sample_misfit(material.error, samples[s], channels, predicted[s * count + k]);
+      total[k] += deviances[s * count + k] = deviance(material.error, misfit, channels) + constant;
+    }
+  }
+  SquaredError error;
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    std::vector<double> weight(count);
+    for (std::size_t k = 0; k < count; ++k) weight[k] = std::log(mixture.share[k]) - 0.5 * (total[k] - deviances[s * count + k]);
+    normalise(weight);
+    ChannelValues mean{};
+    for (std::size_t k = 0; k < count; ++k) {
+      for (std::size_t c = 0; c < mean.size(); ++c) mean[c] += weight[k] * predicted[s * count + k][c];
+    }
+    error += squared_error(mean, samples[s], channels, clip);
+  }
+  return error;
+}
+
+}  // namespace
+
+SquaredError& SquaredError::operator+=(const SquaredError& other) {
+  clipped += other.clipped;
+  root += other.root;
+  return *this;
+}
+
+SquaredError squared_error(const ChannelValues& predicted, const Observation& sample, int channels, double clip) {
+  SquaredError error;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(channels); ++c) {
+    const double measured = std::max(0.0, static_cast<double>(sample.reflectance[c]));
+    const double difference = std::min(clip, predicted[c]) - std::min(clip, measured);
+    const double of_roots = std::sqrt(std::max(0.0, predicted[c])) - std::sqrt(measured);
+    error += {difference * difference, of_roots * of_roots};
+  }
+  return error;
+}
+
+double clip_level(const Observations& observations, const LumitexelList& lumitexels) {
+  std::vector<float> values;
+  for (const std::size_t i : lumitexels) {
+    for (const Observation& sample : observations.of(i)) {
+      values.insert(values.end(), sample.reflectance.begin(), sample.reflectance.begin() + observations.channels);
+    }
+  }
+  if (values.empty()) return 0.0;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(kClipPercentile * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return static_cast<double>(*at);
+}
+
+std::vector<SquaredError> left_out_errors(const Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
+                                          double clip) {
+  std::vector<SquaredError> errors(lumitexels.size());
+  for_each_block(lumitexels.size(), [&](std::size_t l) {
+    const auto samples = observations.of(lumitexels[l]);
+    if (samples.size() >= 2) errors[l] = left_out_error(mixture, samples, observations.channels, clip);
+  });
+  return errors;
+}
+
+}  // namespace lumitexel

@@ -1,0 +1,24 @@
+// How well a mixture predicts samples that it was not shown: each of a lumitexel's samples from a material chosen by the others alone.
+#pragma once
+
+#include "processing/brdf/mixture.h"
+
+namespace lumitexel {
+
+// As a rendering shows errors: in plain squares, with values clipped at a level so that a few highlights do not decide alone, and in
+// squares of square roots, where dark materials count too. 1/sr squared, and 1/sr.
+struct SquaredError {
+  double clipped = 0, root = 0;
+  SquaredError& operator+=(const SquaredError& other);
+};
+SquaredError squared_error(const ChannelValues& predicted, const Observation& sample, int channels, double clip);
+
+// The 99.9th percentile of the lumitexels' reflectances.
+double clip_level(const Observations& observations, const LumitexelList& lumitexels);
+
+// One entry a lumitexel, summed over its samples; the prediction is the mean over materials, weighted by their probability given the
+// lumitexel's other samples. Lumitexels with one sample have none to choose by and count as zero.
+std::vector<SquaredError> left_out_errors(const Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
+                                          double clip);
+
+}  // namespace lumitexel
