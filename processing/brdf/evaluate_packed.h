@@ -22,7 +22,8 @@ void evaluate(const Brdf& brdf, const PackedGeometries& geometries, std::span<fl
 // The same with vectors of a given width, which the processor must have.
 void evaluate(const Brdf& brdf, const PackedGeometries& geometries, std::span<float> values, VectorWidth width);
 
-// One Lafortune lobe and its slopes by ln N and by aim, strength included.
+// One Lafortune lobe and its slopes by ln N and by aim, strength included; within ten times the errors above, relative to the slope
+// where that is more than f, unless N < 2 and the base is below 1e-8.
 struct PackedSlopes {
   std::span<float> value, by_log_shape, by_aim;  // geometries.size() each; the slope by ln(strength) is the value
 };

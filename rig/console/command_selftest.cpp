@@ -20,9 +20,10 @@ nlohmann::json to_json(const NumericCase& row) {
 
 CommandResult run(const SelfTestOptions& options, CommandContext& context) {
   if (!options.numerics) throw BadInput("selftest", "no test named", "--numerics");
-  context.progress.start("numerics", 1);
-  const NumericCases cases = run_numeric_self_test(options.full ? kFullNumericSelfTest : NumericSelfTestOptions{},
-                                                   [&](int part, int) { context.progress.update(part); });
+  const NumericCases cases = run_numeric_self_test(options.full ? kFullNumericSelfTest : NumericSelfTestOptions{}, [&](int part, int parts) {
+    if (part == 0) context.progress.begin("numerics", parts, "parts");
+    context.progress.update(part);
+  });
   CommandResult result;
   result.text = to_table(cases);
   nlohmann::json rows = nlohmann::json::array();

@@ -185,7 +185,7 @@ NumericCases extent_cases(std::size_t lumitexels) {
   const std::size_t before = many.samples.size();
   many.samples.insert(many.samples.end(), others.samples.begin(), others.samples.end());
   for (std::size_t i = 1; i < others.first.size(); ++i) many.first.push_back(before + others.first[i]);
-  const Clustering found = cluster_materials(many, select_lumitexels(many, 1000), options, [](int) {});
+  const Clustering found = cluster_materials(many, select_lumitexels(many, 400), options, [](int) {});
   std::size_t agreeing = 0;
   for (std::size_t i = 0; i < many.lumitexels(); ++i) agreeing += (found.label[i] == found.label[0]) == (i < lumitexels / 2);
   cases.push_back({std::to_string(lumitexels) + " lumitexels of two materials", "cluster_materials: share mislabelled",
