@@ -167,7 +167,9 @@ void evaluate(const Brdf& brdf, const PackedGeometries& geometries, std::span<fl
 }
 
 void evaluate(const Brdf& brdf, const PackedGeometries& geometries, std::span<float> values, VectorWidth width) {
-  if (values.size() != geometries.size() * static_cast<std::size_t>(brdf.channels)) throw std::invalid_argument("evaluate: wrong number of values");
+  if (values.size() != geometries.size() * static_cast<std::size_t>(brdf.channels)) {
+    throw std::invalid_argument("evaluate: wrong number of values");
+  }
 #if defined(__x86_64__)
   if (width == VectorWidth::Avx512) return evaluate_avx512(brdf, geometries, values.data());
   if (width == VectorWidth::Avx2) return evaluate_avx2(brdf, geometries, values.data());

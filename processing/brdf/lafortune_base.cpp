@@ -41,8 +41,7 @@ LafortuneAim lafortune_aim(double phi) {
   if (inside >= 0.0) {
     aim.mirror = 1.0 / (1.0 + t);
     other = t / (1.0 + t);
-    aim.mirror_slope = slope;
-    aim.retro_slope = -slope;
+    aim.gap_slope = slope;
   } else {
     aim.grazing = 2.0 * t / (1.0 + t);
     aim.grazing_slope = 2.0 * sign * slope;

@@ -1,4 +1,4 @@
-// Geometries of many samples as arrays of floats, a quarter smaller than LobeGeometry and fit for wide registers.
+// Geometries of many samples as arrays of floats: 28 bytes a sample, and fit for wide registers.
 //
 // The two gaps are kept as float plus rest, 48 bits: what an aim makes of them is a difference from one, and a float alone would lose
 // the digits of a small base (lafortune_base.h). A sample whose light or view is not above the surface has cos_i 0.

@@ -22,8 +22,8 @@ struct LafortuneLane {
     mirror = two_floats(0.5 * aim.grazing - aim.mirror);
     retro = two_floats(0.5 * aim.grazing - aim.retro);
     slope_constant = two_floats(-aim.grazing_slope);
-    mirror_slope = two_floats(0.5 * aim.grazing_slope - aim.mirror_slope);
-    retro_slope = two_floats(0.5 * aim.grazing_slope - aim.retro_slope);
+    mirror_slope = two_floats(0.5 * aim.grazing_slope - aim.gap_slope);
+    retro_slope = two_floats(0.5 * aim.grazing_slope + aim.gap_slope);
     exponent = two_floats(n);
     exponent_e = two_floats(n * kLog2E);
   }

@@ -79,7 +79,8 @@ void print_family(BrdfFamily family, const std::vector<LobeGeometry>& geometries
     for (const LobeGeometry& geometry : geometries) sum += evaluate(brdf, geometry)[0];
   });
   std::printf("%-10s %-8s %9.2f ns\n", to_string(family), "double", one_by_one);
-  for (const auto& [width, name] : {std::pair(VectorWidth::Scalar, "scalar"), std::pair(VectorWidth::Avx2, "AVX2"), std::pair(VectorWidth::Avx512, "AVX-512")}) {
+  for (const auto& [width, name] :
+       {std::pair(VectorWidth::Scalar, "scalar"), std::pair(VectorWidth::Avx2, "AVX2"), std::pair(VectorWidth::Avx512, "AVX-512")}) {
     if (width > widest_vectors()) continue;
     const double ns = best_ns(packed.size(), repeats, [&] { evaluate(brdf, packed, values, width); });
     std::printf("%-10s %-8s %9.2f ns  %6.1f times double  largest relative error %.1e", to_string(family), name, ns, one_by_one / ns,
