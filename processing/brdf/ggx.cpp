@@ -2,6 +2,10 @@
 // Schlick's Fresnel term:
 //
 //   f = D G F / (4 cos_i cos_o),   D = 1 / (pi alpha^2 cos^4 (1 + tan^2 / alpha^2)^2) at the half vector,   F = F0 + (1 - F0) (1 - cos_d)^5,
+//
+// with tan^2 = across^2 / along^2 (lobe_geometry.h) D = alpha^2 / pi ((across^2 + along^2) / (across^2 + alpha^2 along^2))^2, where nothing
+// cancels at any angle;
+//
 //   G / (4 cos_i cos_o) = 1/2 / (cos_o sqrt(alpha^2 + (1 - alpha^2) cos_i^2) + cos_i sqrt(alpha^2 + (1 - alpha^2) cos_o^2))
 #include <cmath>
 
@@ -11,6 +15,7 @@ namespace lumitexel {
 namespace {
 
 constexpr double kPi = 3.141592653589793;
+constexpr double kLeastAlong2 = 1e-60;  // both directions within 1e-30 of the surface's plane: dark, rather than a quotient of zeros
 constexpr double kLeastLogAlpha = -6.907755278982137;  // 1e-3
 // alpha = 0.9, 0.6, 0.4, 0.25, 0.15, 0.08, 0.04
 constexpr double kLogShapes[] = {-0.10536051565782628, -0.5108256237659907, -0.916290731874155, -1.3862943611198906,
@@ -22,20 +27,20 @@ struct Facets {
 };
 
 Facets facets(double log_alpha, const LobeGeometry& g) {
+  const double along2 = g.along() * g.along();
+  if (along2 < kLeastAlong2) return {};
   const double alpha2 = std::exp(2.0 * log_alpha);
-  const double tangent2 = half_tangent_squared(g), cosine2 = 1.0 / (1.0 + tangent2);
-  const double stretched = 1.0 + tangent2 / alpha2;
-  const double distribution = 1.0 / (kPi * alpha2 * (stretched * cosine2) * (stretched * cosine2));
+  const double stretched = g.across2 + alpha2 * along2;
+  const double spread = (g.across2 + along2) / stretched;
   const double root_i = std::sqrt(alpha2 + (1.0 - alpha2) * g.cos_i * g.cos_i);
   const double root_o = std::sqrt(alpha2 + (1.0 - alpha2) * g.cos_o * g.cos_o);
   const double below = g.cos_o * root_i + g.cos_i * root_o;
   Facets result;
-  result.value = std::isfinite(tangent2) ? distribution * 0.5 / below : 0.0;
-  // d ln D / d ln alpha = -2 + 4 (tan^2 / alpha^2) / (1 + tan^2 / alpha^2)
-  const double by_distribution = -2.0 + 4.0 * (tangent2 / alpha2) / stretched;
+  result.value = alpha2 * spread * spread / kPi * 0.5 / below;
+  const double by_distribution = 2.0 * (g.across2 - alpha2 * along2) / stretched;  // d ln D / d ln alpha
   const double by_root = alpha2 * (g.cos_o * (1.0 - g.cos_i * g.cos_i) / root_i + g.cos_i * (1.0 - g.cos_o * g.cos_o) / root_o);
-  if (result.value > 0.0) result.by_log_alpha = result.value * (by_distribution - by_root / below);
-  const double fall = 1.0 - cos_difference_angle(g);
+  result.by_log_alpha = result.value * (by_distribution - by_root / below);
+  const double fall = 0.5 * g.retro_gap / (1.0 + cos_difference_angle(g));  // 1 - cos_d = sin^2 / (1 + cos)
   result.schlick = fall * fall * fall * fall * fall;
   return result;
 }

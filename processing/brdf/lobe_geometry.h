@@ -12,10 +12,11 @@ struct LobeGeometry {
   double cos_i = 0, cos_o = 0;  // n . wi, n . wo
   double mirror_gap = 1;        // |m(wi) - wo|^2 / 2 with m the mirror image about the normal: 1 - cos of the angle between; 0 … 2
   double retro_gap = 1;         // |wi - wo|^2 / 2: 1 - wi . wo
-  double tangential = 0;        // (wi - n cos_i) . (wo - n cos_o)
+  double across2 = 0;           // squared length of the tangential part of wi + wo, which vanishes where the half vector is the normal
 
   double wi_dot_wo() const { return 1.0 - retro_gap; }
   double normal_product() const { return cos_i * cos_o; }
+  double along() const { return cos_i + cos_o; }  // the normal part of wi + wo
 };
 
 // All three vectors unit.
@@ -23,7 +24,8 @@ LobeGeometry lobe_geometry(const Eigen::Vector3d& normal, const Eigen::Vector3d&
 
 // From rounded cosines: only for directions given by hand, where the digits near a gap of zero do not matter.
 constexpr LobeGeometry geometry_of_cosines(double wi_dot_wo, double cos_i, double cos_o) {
-  return {cos_i, cos_o, 1.0 - (2.0 * cos_i * cos_o - wi_dot_wo), 1.0 - wi_dot_wo, wi_dot_wo - cos_i * cos_o};
+  const double across2 = 2.0 + 2.0 * wi_dot_wo - (cos_i + cos_o) * (cos_i + cos_o);
+  return {cos_i, cos_o, 1.0 - (2.0 * cos_i * cos_o - wi_dot_wo), 1.0 - wi_dot_wo, across2 > 0.0 ? across2 : 0.0};
 }
 
 // Of the half vector (wi + wo) / |wi + wo|: tan^2 of its angle to the normal (infinity for opposite directions), and its

@@ -1,6 +1,8 @@
 #include "processing/brdf/nnls.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -9,6 +11,8 @@ namespace {
 
 // A basis that is nearly dark in all samples (1e-9 of the brightest one) would need a weight without bound to explain anything.
 constexpr double kNoInformation = 1e-18;
+// Share of the diagonal at which a pivot is rounding; how far a ridge stays below the largest curvature.
+constexpr double kRankTolerance = 1e-13, kRidge = 1e-9;
 
 // Unconstrained optimum over the free unknowns; the others are zero.
 BasisVector solve_free(const BasisMatrix& matrix, const BasisVector& right, unsigned free) {
@@ -44,9 +48,7 @@ int steepest_held(const BasisMatrix& matrix, const BasisVector& right, const Nnl
   return best;
 }
 
-}  // namespace
-
-NnlsSolution solve_nnls(const BasisMatrix& matrix, const BasisVector& right) {
+NnlsSolution active_set(const BasisMatrix& matrix, const BasisVector& right) {
   const int n = static_cast<int>(right.size());
   NnlsSolution solution;
   solution.weights = BasisVector::Zero(n);
@@ -78,6 +80,53 @@ NnlsSolution solve_nnls(const BasisMatrix& matrix, const BasisVector& right) {
   }
   solution.converged = false;
   return solution;
+}
+
+// Whether the matrix, scaled to a unit diagonal, has a direction of no curvature.
+bool lacks_rank(const BasisMatrix& matrix) {
+  const Eigen::Index n = matrix.rows();
+  BasisVector scale(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (!(matrix(i, i) > 0.0)) return true;
+    scale[i] = 1.0 / std::sqrt(matrix(i, i));
+  }
+  const BasisMatrix scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
+  return scaled.ldlt().vectorD().minCoeff() <= kRankTolerance * static_cast<double>(n);
+}
+
+// Unconstrained optimum of least norm over the free unknowns.
+BasisVector least_norm_free(const BasisMatrix& matrix, const BasisVector& right, unsigned free) {
+  const Eigen::Index n = right.size();
+  BasisMatrix reduced = matrix;
+  BasisVector target = right;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (free >> i & 1u) continue;
+    reduced.row(i).setZero();
+    reduced.col(i).setZero();
+    target[i] = 0.0;
+  }
+  const Eigen::SelfAdjointEigenSolver<BasisMatrix> eigen(reduced);
+  BasisVector parts = eigen.eigenvectors().transpose() * target;
+  const double least = kRankTolerance * static_cast<double>(n) * std::max(0.0, eigen.eigenvalues().maxCoeff());
+  for (Eigen::Index i = 0; i < n; ++i) parts[i] = eigen.eigenvalues()[i] > least ? parts[i] / eigen.eigenvalues()[i] : 0.0;
+  return eigen.eigenvectors() * parts;
+}
+
+// A ridge too small to bend the answer finds which unknowns are free in the one of least norm; then they are solved without it.
+NnlsSolution least_norm(const BasisMatrix& matrix, const BasisVector& right) {
+  BasisMatrix ridged = matrix;
+  ridged.diagonal().array() += std::max(std::numeric_limits<double>::min(), kRidge * matrix.diagonal().maxCoeff());
+  NnlsSolution solution = active_set(ridged, right);
+  const BasisVector exact = least_norm_free(matrix, right, solution.free);
+  if (exact.allFinite() && (exact.array() >= 0.0).all()) solution.weights = exact;
+  solution.rank_deficient = true;
+  return solution;
+}
+
+}  // namespace
+
+NnlsSolution solve_nnls(const BasisMatrix& matrix, const BasisVector& right) {
+  return lacks_rank(matrix) ? least_norm(matrix, right) : active_set(matrix, right);
 }
 
 }  // namespace lumitexel

@@ -1,7 +1,6 @@
 #include "processing/brdf/normal_equations.h"
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 #include <cmath>
 
 #include "processing/brdf/brdf_slopes.h"
@@ -82,10 +81,10 @@ NormalEquations BrdfProblem::linearise(const Eigen::VectorXd& at) const {
 Eigen::VectorXd damped_step(const NormalEquations& equations, const std::vector<bool>& held, double damping) {
   Eigen::MatrixXd matrix = equations.matrix;
   Eigen::VectorXd right = -equations.gradient;
-  const double smallest = 1e-14 * std::max(1e-300, matrix.diagonal().maxCoeff());
   for (int i = 0; i < matrix.rows(); ++i) {
-    matrix(i, i) += damping * matrix(i, i) + smallest;
-    if (!held[static_cast<std::size_t>(i)]) continue;
+    // Each by its own curvature: a share of the largest would freeze the lobe of a nearly black material.
+    matrix(i, i) += damping * matrix(i, i);
+    if (!held[static_cast<std::size_t>(i)] && matrix(i, i) > 0.0) continue;
     matrix.row(i).setZero();
     matrix.col(i).setZero();
     matrix(i, i) = 1.0;

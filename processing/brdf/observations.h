@@ -17,10 +17,16 @@ struct Observation {
   std::array<float, kMaxChannels> variance{};     // of each r from the photograph's noise; 0 where unknown
 };
 
+// Samples that did not pass the gate (reject_samples.h), by reason.
+struct RejectedSamples {
+  std::size_t not_finite = 0, below_surface = 0;
+};
+
 struct Observations {
   int channels = 0;
   std::vector<Observation> samples;
   std::vector<std::size_t> first{0};  // samples of lumitexel i: first[i] … first[i + 1]
+  RejectedSamples rejected;
 
   std::size_t lumitexels() const { return first.size() - 1; }
   std::span<const Observation> of(std::size_t lumitexel) const {

@@ -1,5 +1,7 @@
 #include "processing/model/observe.h"
 
+#include "processing/brdf/reject_samples.h"
+
 namespace lumitexel {
 
 Observations observe(const CalibratedSession& session, const LumitexelSet& lumitexels) {
@@ -25,6 +27,7 @@ Observations observe(const CalibratedSession& session, const LumitexelSet& lumit
       result.first.push_back(result.samples.size());
     }
   }
+  result.rejected = reject_unusable(result);
   return result;
 }
 

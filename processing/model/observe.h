@@ -7,7 +7,8 @@
 
 namespace lumitexel {
 
-// Directions are made in double from positions and views here, with the lumitexels' own normals. Same order as the set.
+// Directions are made in double from positions and views here, with the lumitexels' own normals. Same order as the set,
+// without the samples that no fit may meet, which are counted.
 Observations observe(const CalibratedSession& session, const LumitexelSet& lumitexels);
 
 }  // namespace lumitexel

@@ -43,5 +43,6 @@ void add_experiment_command(CLI::App& app, CommandAction& action);
 void add_render_command(CLI::App& app, CommandAction& action);
 void add_evaluate_command(CLI::App& app, CommandAction& action);
 void add_report_command(CLI::App& app, CommandAction& action);
+void add_selftest_command(CLI::App& app, CommandAction& action);
 
 }  // namespace lumitexel

@@ -28,6 +28,7 @@ const std::vector<void (*)(CLI::App&, CommandAction&)> kCommands = {
     add_render_command,
     add_evaluate_command,
     add_report_command,
+    add_selftest_command,
 };
 
 // Those that end cleanly on Ctrl-C; the others may be killed at any time and are.

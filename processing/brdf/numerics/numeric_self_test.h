@@ -1,0 +1,22 @@
+// The numerical self-test: kernels and fits at the extremes, one table.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+
+#include "processing/brdf/numerics/numeric_case.h"
+
+namespace lumitexel {
+
+struct NumericSelfTestOptions {
+  std::size_t trials = 20'000;       // random lobes for each row of the kernels
+  std::size_t lumitexels = 20'000;   // of the largest scene
+};
+inline constexpr NumericSelfTestOptions kFullNumericSelfTest{1'000'000, 10'000'000};
+
+// report(part, parts) is called as each part begins. Call before the process starts threads (trapped_run.h).
+NumericCases run_numeric_self_test(const NumericSelfTestOptions& options, const std::function<void(int, int)>& report);
+std::string to_table(const NumericCases& cases);
+
+}  // namespace lumitexel
