@@ -1,6 +1,7 @@
 #include "processing/brdf/fit_material.h"
 
 #include <cmath>
+#include <limits>
 
 #include "processing/brdf/estimate_error.h"
 #include "processing/brdf/lobe_starts.h"
@@ -48,20 +49,22 @@ MaterialFit matte(FitSamples samples, int channels, const MaterialFitOptions& op
   return refined({diffuse_alone(samples, even, black), options.error}, samples, options);
 }
 
+std::vector<LobeBounds> kinds_of_lobe(const Brdf& before, const MaterialFitOptions& options) {
+  if (options.any_aim) return {widest_bounds(options.family)};
+  std::vector<LobeBounds> kinds{usual_bounds(options.family)};
+  if (lobe_family(options.family).aims && !before.lobes.empty()) kinds.push_back(usual_bounds(options.family, kRetroAim));
+  return kinds;
+}
+
 // The better of the kinds of lobe that may come next.
 MaterialFit with_lobe(const MaterialFit& before, FitSamples samples, const MaterialFitOptions& options) {
   MaterialFit best;
-  bool found = false;
-  std::vector<LobeBounds> kinds{options.any_aim ? widest_bounds(options.family) : usual_bounds(options.family)};
-  const bool may_return = !options.any_aim && lobe_family(options.family).aims && !before.model.brdf.lobes.empty();
-  if (may_return) kinds.push_back(usual_bounds(options.family, kRetroAim));
-  for (const LobeBounds& bounds : kinds) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const LobeBounds& bounds : kinds_of_lobe(before.model.brdf, options)) {
     const Brdf start = with_best_lobe(before.model.brdf, samples, bounds, before.model.error);
     const MaterialFit candidate = refined({start, before.model.error}, samples, options);
-    if (found && misfit(best.model.brdf, samples, best.model.error) <=
-                     misfit(candidate.model.brdf, samples, candidate.model.error)) continue;
-    best = candidate;
-    found = true;
+    const double value = misfit(candidate.model.brdf, samples, candidate.model.error);
+    if (value < least || best.model.brdf.lobes.empty()) best = candidate, least = value;
   }
   return best;
 }
@@ -104,16 +107,26 @@ MaterialFit fit_material(FitSamples samples, int channels, const Brdf* start, co
 }
 
 MaterialFit fit_best_family(FitSamples samples, int channels, const MaterialFitOptions& options) {
-  MaterialFit best;
-  bool first = true;
+  std::vector<MaterialFit> fits;
+  std::size_t likeliest = 0;
+  std::vector<double> misfits;
   for (const BrdfFamily family : {BrdfFamily::Lafortune, BrdfFamily::Ggx, BrdfFamily::Ward}) {
     MaterialFitOptions own = options;
     own.family = family;
-    MaterialFit fit = fit_material(samples, channels, nullptr, own);
-    if (first || fit.criterion < best.criterion) best = fit;
-    first = false;
+    fits.push_back(fit_material(samples, channels, nullptr, own));
+    misfits.push_back(misfit(fits.back().model.brdf, samples, fits.back().model.error));
+    if (misfits.back() < misfits[likeliest]) likeliest = fits.size() - 1;
   }
-  return best;
+  // One independence for all: that of the likeliest, since what a BRDF leaves unexplained errs together.
+  const double independence = options.estimate_error ? fits[likeliest].model.error.independence : 1.0;
+  std::size_t best = 0;
+  for (std::size_t f = 0; f < fits.size(); ++f) {
+    MaterialFitOptions own = options;
+    own.family = fits[f].model.brdf.family;
+    set_criterion(fits[f], samples, independence, own);
+    if (fits[f].criterion < fits[best].criterion) best = f;
+  }
+  return fits[best];
 }
 
 }  // namespace lumitexel
