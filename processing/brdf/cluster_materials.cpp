@@ -11,7 +11,7 @@
 namespace lumitexel {
 namespace {
 
-constexpr int kFinalRounds = 4;
+constexpr int kSearchRounds = 24, kFinalRounds = 4;  // of expectation-maximisation
 constexpr int kMostExtra = 8;  // materials beyond those wanted that splitting may make
 
 std::vector<int> most_probable(const Responsibilities& r) {
@@ -50,6 +50,36 @@ void choose_lobes(Mixture& mixture, const Observations& observations, const Lumi
   });
 }
 
+// Too many materials, settled, and how they were fitted.
+struct Search {
+  MaterialFitOptions fit;
+  MaterialModel whole;
+  Mixture mixture;
+};
+
+// While materials are told apart they all have a lobe: what a matte whole hides, a part may show.
+Search search_with(bool estimate_error, const Observations& observations, const LumitexelList& selection, const ClusterOptions& options,
+                   int most) {
+  Search search{options.fit, {}, {}};
+  search.fit.choose_lobes = false;
+  search.fit.most_lobes = std::min(1, options.fit.most_lobes);
+  search.fit.estimate_error = estimate_error;
+  const MaterialFit whole = fit_material(samples_of(observations, selection), observations.channels, nullptr, search.fit);
+  search.whole = whole.model;
+  search.mixture = split_materials(whole, observations, selection, most, search.fit);
+  maximise_expectation(search.mixture, observations, selection, search.fit, kSearchRounds);
+  return search;
+}
+
+Search search_for_materials(const Observations& observations, const LumitexelList& selection, const ClusterOptions& options, int most) {
+  if (options.errors != ErrorSource::Auto) {
+    return search_with(options.errors == ErrorSource::Estimated, observations, selection, options, most);
+  }
+  Search given = search_with(false, observations, selection, options, most);
+  Search estimated = search_with(true, observations, selection, options, most);
+  return estimated_errors_serve(given.mixture, estimated.mixture, observations, selection) ? estimated : given;
+}
+
 }  // namespace
 
 void set_labels(const std::vector<int>& label, const LumitexelList& all, std::size_t lumitexels, Clustering& clustering) {
@@ -67,18 +97,12 @@ Clustering cluster_materials(const Observations& observations, const LumitexelLi
   const int most = wanted == 1 ? 1 : std::min(2 * wanted, wanted + kMostExtra);
   report(0);
 
-  // While materials are told apart they all have a lobe: what a matte whole hides, a part may show.
-  MaterialFitOptions searching = options.fit;
-  searching.choose_lobes = false;
-  searching.most_lobes = std::min(1, options.fit.most_lobes);
-  searching.estimate_error = options.errors == ErrorSource::Estimated;
-  const MaterialFit start = fit_material(samples_of(observations, selection), observations.channels, nullptr, searching);
-  Mixture mixture = split_materials(start, observations, selection, most, searching);
-  if (options.errors == ErrorSource::Auto) searching.estimate_error = estimated_errors_serve(mixture, observations, selection, searching);
-  Responsibilities r = merge_materials(mixture, observations, selection, {options.materials, searching}, report);
+  Search search = search_for_materials(observations, selection, options, most);
+  Mixture& mixture = search.mixture;
+  Responsibilities r = merge_materials(mixture, observations, selection, {options.materials, search.fit}, report);
 
   MaterialFitOptions settled = options.fit;
-  settled.estimate_error = searching.estimate_error;
+  settled.estimate_error = search.fit.estimate_error;
   result.estimated_errors = settled.estimate_error;
   std::vector<BrdfFit> fits;
   choose_lobes(mixture, observations, selection, r, settled, fits);
@@ -87,7 +111,7 @@ Clustering cluster_materials(const Observations& observations, const LumitexelLi
   const LumitexelList finalists = members_of_all(label, all, mixture.materials.size(), options.final_lumitexels);
   r = maximise_expectation(mixture, observations, finalists, settled, kFinalRounds);
   choose_lobes(mixture, observations, finalists, r, settled, fits);
-  result.single = fit_material(samples_of(observations, thinned(all, options.final_lumitexels)), observations.channels, &start.model.brdf,
+  result.single = fit_material(samples_of(observations, thinned(all, options.final_lumitexels)), observations.channels, &search.whole.brdf,
                                settled).model;
   for (std::size_t k = 0; k < mixture.materials.size(); ++k) result.materials.push_back({mixture.materials[k], fits[k], 0});
   set_labels(most_probable(responsibilities(mixture, observations, all)), all, observations.lumitexels(), result);

@@ -9,10 +9,9 @@
 
 namespace lumitexel {
 
-// Fits every material to one half of its lumitexels in both ways and compares, on the other half, squared errors of predicted
-// reflectance as a rendering shows them (both clipped at the 99.9th percentile). False if the estimated ones are worse by more
-// than twice the difference's standard error (over lumitexels, whose samples err together).
-bool estimated_errors_serve(const Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
-                            const MaterialFitOptions& options);
+// Two mixtures learnt from the same lumitexels, with the error model given and with error models estimated. False if the estimated one
+// predicts left-out samples (left_out_error.h) worse by more than twice the paired difference's standard error.
+bool estimated_errors_serve(const Mixture& given, const Mixture& estimated, const Observations& observations,
+                            const LumitexelList& lumitexels);
 
 }  // namespace lumitexel

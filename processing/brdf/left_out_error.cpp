@@ -88,4 +88,25 @@ std::vector<SquaredError> left_out_errors(const Mixture& mixture, const Observat
   return errors;
 }
 
+SquaredError total_error(const std::vector<SquaredError>& errors) {
+  SquaredError total{1e-300, 1e-300};  // a world without errors divides nothing by zero
+  for (const SquaredError& error : errors) total += error;
+  return total;
+}
+
+std::vector<double> relative_errors(const std::vector<SquaredError>& errors, const SquaredError& total) {
+  std::vector<double> values;
+  for (const SquaredError& error : errors) values.push_back(error.clipped / total.clipped + error.root / total.root);
+  return values;
+}
+
+double excess_in_standard_errors(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t l = 0; l < a.size(); ++l) {
+    sum += a[l] - b[l];
+    squares += (a[l] - b[l]) * (a[l] - b[l]);
+  }
+  return squares > 0.0 ? sum / std::sqrt(squares) : 0.0;
+}
+
 }  // namespace lumitexel

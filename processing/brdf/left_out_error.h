@@ -21,4 +21,11 @@ double clip_level(const Observations& observations, const LumitexelList& lumitex
 std::vector<SquaredError> left_out_errors(const Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
                                           double clip);
 
+// Both kinds of error as shares of `total`, added, per lumitexel.
+std::vector<double> relative_errors(const std::vector<SquaredError>& errors, const SquaredError& total);
+SquaredError total_error(const std::vector<SquaredError>& errors);
+
+// Sum of a - b over its standard error, the lumitexels taken as independent; 0 if the two are the same.
+double excess_in_standard_errors(const std::vector<double>& a, const std::vector<double>& b);
+
 }  // namespace lumitexel

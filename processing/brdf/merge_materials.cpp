@@ -127,36 +127,19 @@ struct Candidate {
   std::vector<SquaredError> errors;
 };
 
-// Both kinds of error on one scale: shares of what the last candidate, one material, leaves.
-std::vector<double> relative_errors(const Candidate& candidate, const SquaredError& scale) {
-  std::vector<double> values;
-  for (const SquaredError& error : candidate.errors) values.push_back(error.clipped / scale.clipped + error.root / scale.root);
-  return values;
-}
-
-double mean_excess_in_standard_errors(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0, squares = 0.0;
-  for (std::size_t l = 0; l < a.size(); ++l) {
-    sum += a[l] - b[l];
-    squares += (a[l] - b[l]) * (a[l] - b[l]);
-  }
-  return squares > 0.0 ? sum / std::sqrt(squares) : 0.0;
-}
-
 // candidates: from many materials to one.
 std::size_t fewest_that_predict(const std::vector<Candidate>& candidates) {
-  SquaredError scale{1e-300, 1e-300};
-  for (const SquaredError& error : candidates.back().errors) scale += error;
+  const SquaredError scale = total_error(candidates.back().errors);
   std::vector<std::vector<double>> errors;
   std::size_t best = 0;
   std::vector<double> totals;
   for (const Candidate& candidate : candidates) {
-    errors.push_back(relative_errors(candidate, scale));
+    errors.push_back(relative_errors(candidate.errors, scale));
     totals.push_back(std::accumulate(errors.back().begin(), errors.back().end(), 0.0));
     if (totals.back() < totals[best]) best = totals.size() - 1;
   }
   for (std::size_t i = candidates.size(); i-- > best;) {
-    if (mean_excess_in_standard_errors(errors[i], errors[best]) <= kStandardErrors) return i;
+    if (excess_in_standard_errors(errors[i], errors[best]) <= kStandardErrors) return i;
   }
   return best;
 }
@@ -177,7 +160,6 @@ void merge_until(int materials, bool stop_where_needed, Mixture& mixture, const 
 
 Responsibilities merge_materials(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
                                  const MergeOptions& options, const std::function<void(int)>& report) {
-  maximise_expectation(mixture, observations, lumitexels, options.fit, 2 * kRounds);
   const bool chosen = options.materials == 0;
   if (chosen && !options.fit.estimate_error) {
     const double clip = clip_level(observations, lumitexels);

@@ -24,7 +24,7 @@ struct MergeOptions {
   MaterialFitOptions fit;
 };
 
-// Greedy: always the pair whose merging loses least likelihood, then the mixture settles again.
+// `mixture` should have settled. Greedy: always the pair whose merging loses least likelihood, then the mixture settles again.
 Responsibilities merge_materials(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
                                  const MergeOptions& options, const std::function<void(int)>& report);
 

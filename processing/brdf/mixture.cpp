@@ -17,18 +17,21 @@ constexpr double kSettled = 2e-6;         // relative change of the likelihood a
 constexpr double kLeastProbability = 1e-3;  // below it a lumitexel is not worth its time in a material's fit
 constexpr int kStepsPerRound = 3;         // of Levenberg-Marquardt
 
-MaterialModel maximised(const MaterialModel& model, FitSamples samples, const MaterialFitOptions& options) {
+MaterialModel maximised(const MaterialModel& model, FitSamples samples, const MaterialFitOptions& options, bool first_round) {
   BrdfFitOptions fit = refit_options(model, options);
   fit.reweightings = 1;
   fit.max_iterations = kStepsPerRound;
   MaterialModel better{fit_brdf(model.brdf, samples, fit).brdf, model.error};
-  if (options.estimate_error) better.error = updated_error_model(better.brdf, samples, model.error);
+  if (!options.estimate_error) return better;
+  // The tails' weight is asked for once; after that the scales follow.
+  better.error = first_round ? estimate_error_model(better.brdf, samples, model.error)
+                             : updated_error_model(better.brdf, samples, model.error);
   return better;
 }
 
 // True if a material vanished.
 bool maximise(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels, const Responsibilities& r,
-              const MaterialFitOptions& options) {
+              const MaterialFitOptions& options, bool first_round) {
   std::vector<double> members(mixture.materials.size(), 0.0);
   for (std::size_t l = 0; l < lumitexels.size(); ++l) {
     for (std::size_t k = 0; k < members.size(); ++k) members[k] += r.at(l, k);
@@ -36,7 +39,7 @@ bool maximise(Mixture& mixture, const Observations& observations, const Lumitexe
   const double most = *std::max_element(members.begin(), members.end());
   oneapi::tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t k) {
     if (members[k] < std::min(kFewestMembers, most)) return;
-    mixture.materials[k] = maximised(mixture.materials[k], samples_of(observations, lumitexels, r, k), options);
+    mixture.materials[k] = maximised(mixture.materials[k], samples_of(observations, lumitexels, r, k), options, first_round);
   });
   Mixture kept;
   for (std::size_t k = 0; k < members.size(); ++k) {
@@ -118,7 +121,7 @@ Responsibilities maximise_expectation(Mixture& mixture, const Observations& obse
   Responsibilities r = responsibilities(mixture, observations, lumitexels);
   for (int round = 0; round < rounds; ++round) {
     const double before = r.log_likelihood;
-    const bool vanished = maximise(mixture, observations, lumitexels, r, options);
+    const bool vanished = maximise(mixture, observations, lumitexels, r, options, round == 0);
     r = responsibilities(mixture, observations, lumitexels);
     if (!vanished && std::abs(r.log_likelihood - before) <= kSettled * std::abs(before)) break;
   }
