@@ -39,6 +39,7 @@ struct LensSummary {
   std::optional<double> reprojection_px;   // rms
   std::vector<double> params{};            // focal x, y, principal x, y (px), k1, k2, p1, p2; empty for imports
   std::vector<double> sigma{};             // of each; empty if unknown
+  std::optional<double> corner_sigma_px;   // of where the lens puts a direction, in the corner where it knows least
   int boards = 0;                          // used
   std::vector<std::string> notes{};        // boards rejected and why, parts of the picture without boards, refusals
   std::optional<double> corner_transmission, corner_transmission_sigma;  // against the principal point

@@ -31,8 +31,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SensorSummary, source, electrons_per_dn, read
                                    saturation_dn, electrons_per_dn_sigma, read_noise_dn_sigma, black_level_dn_sigma,
                                    saturation_dn_sigma, linear, coldest_c, warmest_c, brackets_with_scaled_darks,
                                    brackets_with_drifted_darks, least_dark_scale, largest_dark_scale, notes)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LensSummary, source, reprojection_px, params, sigma, boards, notes, corner_transmission,
-                                   corner_transmission_sigma)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LensSummary, source, reprojection_px, params, sigma, corner_sigma_px, boards, notes,
+                                   corner_transmission, corner_transmission_sigma)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PoseSummary, view, source, sigma_m, sigma_deg, silhouette_px, tags, dominant)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LampSummary, drifts, factor, factor_sigma, card_views, card_outliers,
                                    pattern_parameters, at_10_deg, card_source)

@@ -25,7 +25,7 @@ namespace lumitexel {
 namespace {
 
 // Part of the key: change it with anything that changes what a calibration gives.
-constexpr const char* kMethod = "captured calibration 3";
+constexpr const char* kMethod = "captured calibration 4";
 // Room for the mask about the mesh's picture: a coarse mesh's error, and that of a pose that nobody measured.
 constexpr int kRegisteredMargin_px = 4, kNominalMargin_px = 8;
 
@@ -48,6 +48,7 @@ class SessionCalibration {
     if (records_.empty()) return;
     tags_ = detect_session_tags(reader_, records_, in.rig.tags, lens_.camera, progress);
     poses_ = measure_poses(in, records_, reader_, lens_, tags_, options, summary_, progress);
+    take_lens_of_poses();
   }
 
   std::pair<CalibratedSession, CalibrationSummary> run() {
@@ -65,6 +66,15 @@ class SessionCalibration {
   }
 
  private:
+  // Poses and lens were found together and make up for each other: neither is right with another.
+  void take_lens_of_poses() {
+    if (!poses_.camera) return;
+    lens_.camera = *poses_.camera;
+    lens_.covariance = poses_.lens_covariance;
+    summary_.lens.notes.emplace_back("refined together with the poses");
+    state_lens(lens_, summary_.lens);
+  }
+
   Eigen::Isometry3d rig_from_world(std::size_t v) const {
     return in_.rig.camera.camera_from_rig.inverse() * poses_.camera_from_world[v];
   }

@@ -115,7 +115,8 @@ bool contradicts(const TurntableRegistration& result, const std::vector<Eigen::I
 SessionPoses measure_poses(const CapturedInputs& in, const std::vector<ViewFrames>& views, const RadianceReader& reader,
                            const SessionLens& lens, const std::vector<std::vector<DetectedTag>>& tags,
                            const CalibrationOptions& options, CalibrationSummary& summary, Progress& progress) {
-  SessionPoses poses{nominal_poses(in, views), std::nullopt, false};
+  SessionPoses poses;
+  poses.camera_from_world = nominal_poses(in, views);
   for (const PlannedView& view : in.plan.views) summary.poses.emplace_back().view = view.name;
   if (!options.takes(CalibrationStep::Pose)) return poses;
   TurntableRegistration result = register_session(in, views, reader, lens, tags, progress);
@@ -132,6 +133,11 @@ SessionPoses measure_poses(const CapturedInputs& in, const std::vector<ViewFrame
     } else {
       summary.poses[v].source = "rig description, confirmed";
     }
+  }
+  if (moved && result.unknowns.lens >= 0) {
+    poses.camera = result.model.camera;
+    poses.lens_covariance =
+        result.covariance.block<kLensParameters, kLensParameters>(result.unknowns.lens, result.unknowns.lens);
   }
   poses.registration = std::move(result);
   return poses;

@@ -54,6 +54,7 @@ std::string lens_section(const CalibrationSummary& summary, const std::filesyste
   }
   Rows fit{{"boards used", std::to_string(lens.boards)},
            {"re-projection, px rms", measured(lens.reprojection_px)},
+           {"sigma of a corner's place, px", measured(lens.corner_sigma_px, 1.0, 2)},
            {"transmission in the corner", measured(lens.corner_transmission, 1.0, 4)},
            {"its sigma", measured(lens.corner_transmission_sigma, 1.0, 2)}};
   return html::section("Lens", "From: " + lens.source + ".",

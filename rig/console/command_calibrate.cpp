@@ -73,6 +73,7 @@ json camera_json(const CalibratedSession& session, const LensSummary& lens) {
   return {{"model", "OPENCV"},
           {"params", params},
           {"params_sigma", lens.sigma.empty() ? json(nullptr) : json(lens.sigma)},
+          {"corner_sigma_px", measured_or_null(lens.corner_sigma_px)},
           {"reprojection_px", measured_or_null(lens.reprojection_px)}};
 }
 
@@ -117,6 +118,7 @@ void describe(const CalibratedSession& session, const CalibrationSummary& summar
   const LensSummary& lens = summary.lens;
   if (lens.reprojection_px) {
     text << "lens: " << lens.source << ", " << lens.boards << " boards, re-projection " << *lens.reprojection_px << " px rms";
+    if (lens.corner_sigma_px) text << ", sigma in the corners " << *lens.corner_sigma_px << " px";
     if (lens.corner_transmission) text << ", transmission in the corner " << *lens.corner_transmission;
     text << '\n';
   }

@@ -26,18 +26,19 @@ void print_row(const std::string& name, const ImageError& error, const ImageErro
   std::fflush(stdout);
 }
 
-int run(const std::string& directory, const FitOptions& fit) {
+int run(const std::string& directory, const FitOptions& fit, const std::vector<CalibrationStep>& steps, bool with_none) {
   const SessionStore store = SessionStore::open(directory, OpenMode::ReadOnly);
   std::printf("%s\n%s, %s quality, %d materials; held-out photographs\n", machine_line().c_str(), directory.c_str(),
               fit.quality.c_str(), fit.materials);
   std::printf("%-24s %8s %8s %8s %7s   %s\n", "calibrated", "relative", "clipped", "sqrt", "PSNR", "clipped");
   const ImageError all = heldout_error(store, {}, fit);
   print_row("with everything", all, all);
-  for (const CalibrationStep step : all_calibration_steps()) {
+  for (const CalibrationStep step : steps) {
     print_row(std::string("without ") + to_string(step), heldout_error(store, {{step}}, fit), all);
   }
-  const auto& steps = all_calibration_steps();
-  print_row("without any of them", heldout_error(store, {{steps.begin(), steps.end()}}, fit), all);
+  if (!with_none) return 0;
+  const auto& every = all_calibration_steps();
+  print_row("without any of them", heldout_error(store, {{every.begin(), every.end()}}, fit), all);
   return 0;
 }
 
@@ -51,8 +52,14 @@ int main(int argc, char** argv) {
   app.add_option("SESSION", session, "A captured session")->required();
   app.add_option("--quality", quality, "Of the fit: draft, standard or reference")->capture_default_str();
   app.add_option("--materials", materials, "Materials to fit")->capture_default_str();
+  std::vector<std::string> only;
+  app.add_option("--only", only, "These steps and no others are left out, one at a time")->delimiter(',');
   CLI11_PARSE(app, argc, argv);
   lumitexel::FitOptions fit = lumitexel::FitOptions::preset(quality);
   fit.materials = materials;
-  return lumitexel::run(session, fit);
+  std::vector<lumitexel::CalibrationStep> steps;
+  for (const std::string& name : only) steps.push_back(lumitexel::calibration_step_from_string(name));
+  const auto& every = lumitexel::all_calibration_steps();
+  if (only.empty()) steps.assign(every.begin(), every.end());
+  return lumitexel::run(session, fit, steps, only.empty());
 }

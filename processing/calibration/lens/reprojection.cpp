@@ -3,6 +3,7 @@
 #include <ceres/autodiff_cost_function.h>
 #include <ceres/loss_function.h>
 #include <ceres/manifold.h>
+#include <ceres/normal_prior.h>
 #include <ceres/problem.h>
 #include <ceres/rotation.h>
 #include <ceres/solver.h>
@@ -91,7 +92,8 @@ CameraModel with_lens_vector(CameraModel camera, const LensVector& lens) {
   return camera;
 }
 
-bool refine_boards(CameraModel& camera, const LensMask& free, std::vector<PlacedBoard>& boards) {
+bool refine_boards(CameraModel& camera, const LensMask& free, std::vector<PlacedBoard>& boards,
+                   const std::optional<LensPull>& pull) {
   LensVector lens = lens_vector(camera);
   std::vector<PoseVector> poses;
   for (const PlacedBoard& board : boards) poses.push_back(pose_vector(board.camera_from_board));
@@ -102,6 +104,11 @@ bool refine_boards(CameraModel& camera, const LensMask& free, std::vector<Placed
       problem.AddResidualBlock(cost_of(landmark).release(), new ceres::HuberLoss(worst_expected(landmark)), lens.data(),
                                poses[b].data());
     }
+  }
+  if (pull) {
+    // U^T U is the information.
+    const Eigen::MatrixXd root = pull->information.llt().matrixU();
+    problem.AddResidualBlock(new ceres::NormalPrior(root, pull->mean), nullptr, lens.data());
   }
   std::vector<int> fixed;
   for (int i = 0; i < kLensParameters; ++i) {

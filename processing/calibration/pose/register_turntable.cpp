@@ -33,14 +33,22 @@ struct Information {
   Eigen::MatrixXd sum() const { return contour + tags + lens + angles + mesh; }
 };
 
+// Terms that a lens does not have are known to be zero: they come with no variance.
+Eigen::Matrix<double, 8, 8> information_of_lens(Eigen::Matrix<double, 8, 8> covariance) {
+  constexpr double kExact = 1e-24;
+  covariance.diagonal() = covariance.diagonal().cwiseMax(kExact);
+  const LensVector scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::Matrix<double, 8, 8> unit = scale.asDiagonal() * covariance * scale.asDiagonal();
+  return scale.asDiagonal() * unit.ldlt().solve(Eigen::Matrix<double, 8, 8>::Identity()) * scale.asDiagonal();
+}
+
 class TurntableProblem {
  public:
   TurntableProblem(const MeshSilhouette& mesh, const std::vector<TurntableView>& views, const TurntableStart& start,
                    std::vector<TagCorner> corners, const TurntableOptions& options)
       : unknowns(!corners.empty(), options.lens_covariance.has_value(), options.angle_sigma_deg > 0.0, views.size()),
         mesh_(mesh), views_(views), corners_(std::move(corners)), options_(options), first_camera_(start.camera) {
-    if (options.lens_covariance)
-      lens_information_ = options.lens_covariance->ldlt().solve(Eigen::Matrix<double, 8, 8>::Identity());
+    if (options.lens_covariance) lens_information_ = information_of_lens(*options.lens_covariance);
   }
 
   const TurntableUnknowns unknowns;
