@@ -19,6 +19,7 @@ namespace lumitexel {
 struct SessionPoses {
   std::vector<Eigen::Isometry3d> camera_from_world;  // by view; world: the mesh's frame
   std::optional<TurntableRegistration> registration;  // empty if it was not tried or did not come to an end
+  bool replaced = false;   // the registration contradicts the description, and its poses are taken
   bool registered = false;  // false: as the rig's description has it, and nobody knows how well that is
 };
 
