@@ -54,6 +54,11 @@ struct PoseSummary {
   std::string dominant{};                            // what most of the shift's variance comes from
 };
 
+struct JointSummary {
+  bool tried = false, taken = false;  // highlights asked about the lens; what they say was significant
+  double chi2_gain = 0;               // by which chi square of highlights and prior fell
+};
+
 struct LampSummary {
   bool drifts = false;
   std::vector<double> factor{}, factor_sigma{};   // a view: output over that at the gray card's bracket
@@ -82,6 +87,7 @@ struct CalibrationSummary {
   LensSummary lens;
   std::vector<PoseSummary> poses;  // in the order of the session's views
   std::string pose_problem;        // why poses are the rig description's; empty if they are not, or nothing was tried
+  JointSummary joint;
   LampSummary lamp;
   std::vector<UncertaintyShare> shares;  // sums to 1 for each quantity
   std::vector<std::string> pictures;     // PNG files beside the photographs, "lens_coverage.png"

@@ -12,6 +12,7 @@
 #include "processing/calibration/pose/joint_refinement.h"
 #include "processing/calibration/pose/object_mask.h"
 #include "processing/calibration/session_card.h"
+#include "processing/calibration/session_joint.h"
 #include "processing/calibration/session_lamp.h"
 #include "processing/calibration/session_lens.h"
 #include "processing/calibration/session_lights.h"
@@ -82,7 +83,8 @@ class SessionCalibration {
   SessionLights measure_lights_of_views() {
     std::vector<SphereShots> shots;
     for (const ViewFrames& view : records_) shots.push_back(view.spheres);
-    const LightSolution spheres = measure_lights(reader_, shots, lens_.camera, in_.rig, progress_);
+    const SphereHighlights seen = read_sphere_highlights(reader_, shots, lens_.camera, in_.rig, progress_);
+    const LightSolution spheres = refine_jointly(seen, in_, options_, lens_, poses_, summary_);
     SessionLights lights = align_lights(spheres, records_, in_.plan, in_.rig, in_.rig.camera.camera_from_rig);
     summary_.sphere_residual_px = spheres.residual_px;
     summary_.sphere_sigma_scale = spheres.sigma_scale;
@@ -113,7 +115,8 @@ class SessionCalibration {
     for (std::size_t v = 0; v < records_.size(); ++v) {
       const ArmPrediction& light = lights.in_rig[v];
       in_camera.push_back({v, in_.rig.camera.camera_from_rig * light.position_in_rig,
-                           turn * light.covariance * turn.transpose() + shared2 * Eigen::Matrix3d::Identity()});
+                           turn * light.covariance * turn.transpose() + shared2 * Eigen::Matrix3d::Identity(),
+                           lights.spheres.lights[v].with_lens});
       own2 += light.covariance.trace() / 3.0 / static_cast<double>(records_.size());
     }
     std::vector<double> sigmas;

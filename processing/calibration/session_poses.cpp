@@ -125,10 +125,10 @@ SessionPoses measure_poses(const CapturedInputs& in, const std::vector<ViewFrame
     return poses;
   }
   poses.registered = true;
-  const bool moved = contradicts(result, poses.camera_from_world, extent_of(in.mesh).centre);
+  poses.replaced = contradicts(result, poses.camera_from_world, extent_of(in.mesh).centre);
   for (std::size_t v = 0; v < views.size(); ++v) {
     summary.poses[v] = summarise(result.views[v], in.plan.views[v].name, on_table(tags[v], in.rig.tags));
-    if (moved) {
+    if (poses.replaced) {
       poses.camera_from_world[v] = result.views[v].camera_from_mesh;
     } else {
       summary.poses[v].source = "rig description, confirmed";

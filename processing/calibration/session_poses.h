@@ -22,6 +22,7 @@ struct SessionPoses {
   // The lens as the same least squares has it: with these poses and no others. Only where the lens was not taken as exact.
   std::optional<CameraModel> camera;
   std::optional<LensMatrix> lens_covariance;
+  bool replaced = false;   // the registration contradicts the description, and its poses are taken
   bool registered = false;  // false: as the rig's description has it, and nobody knows how well that is
 };
 

@@ -86,7 +86,7 @@ json result_json(const CalibratedSession& session, const CalibrationSummary& sum
                   {{"value", captured ? json(summary.intensity) : json(nullptr)},
                    {"sigma", known_or_null(session.gray_card_scale_sigma)}}}};
   const json all = summary_json(summary);
-  for (const char* key : {"sensor", "lens", "lamp", "pose_problem", "shares", "sphere_residual_px", "arm_residual_m",
+  for (const char* key : {"sensor", "lens", "lamp", "pose_problem", "joint", "shares", "sphere_residual_px", "arm_residual_m",
                           "arm_scatter_m", "hot_pixels", "views_without_silhouette"}) {
     result[key] = captured || !summary.lens.params.empty() ? all.at(key) : json(nullptr);
   }
@@ -127,6 +127,10 @@ void describe(const CalibratedSession& session, const CalibrationSummary& summar
   const auto measured = std::count_if(summary.lights.begin(), summary.lights.end(),
                                       [](const LightSummary& light) { return light.from_spheres; });
   describe_poses(summary, text);
+  if (summary.joint.tried) {
+    text << "joint refinement: highlights move lens and poses by chi square " << summary.joint.chi2_gain
+         << (summary.joint.taken ? ", taken\n" : ", not significant, not taken\n");
+  }
   text << "light: " << measured << " of " << summary.lights.size() << " measured by the spheres, highlights fit to "
        << summary.sphere_residual_px << " px rms, arm within " << 1e3 * summary.arm_residual_m << " mm rms\n"
        << "scale: gray card to " << 100.0 * summary.scale_sigma << " %, intensity";

@@ -79,19 +79,6 @@ double worst_expected(const Landmark& landmark) {
 
 }  // namespace
 
-LensVector lens_vector(const CameraModel& c) {
-  LensVector lens;
-  lens << c.focal_x_px, c.focal_y_px, c.principal_x_px, c.principal_y_px, c.k1, c.k2, c.p1, c.p2;
-  return lens;
-}
-
-CameraModel with_lens_vector(CameraModel camera, const LensVector& lens) {
-  camera.focal_x_px = lens[0], camera.focal_y_px = lens[1];
-  camera.principal_x_px = lens[2], camera.principal_y_px = lens[3];
-  camera.k1 = lens[4], camera.k2 = lens[5], camera.p1 = lens[6], camera.p2 = lens[7];
-  return camera;
-}
-
 bool refine_boards(CameraModel& camera, const LensMask& free, std::vector<PlacedBoard>& boards,
                    const std::optional<LensPull>& pull) {
   LensVector lens = lens_vector(camera);

@@ -11,16 +11,11 @@
 
 #include "processing/calibration/lens/camera_model.h"
 #include "processing/calibration/lens/landmark.h"
+#include "processing/calibration/lens/lens_vector.h"
 
 namespace lumitexel {
 
-inline constexpr int kLensParameters = 8;
-using LensVector = Eigen::Matrix<double, kLensParameters, 1>;  // focal x, y, principal x, y, k1, k2, p1, p2
-using LensMatrix = Eigen::Matrix<double, kLensParameters, kLensParameters>;
 using LensMask = std::array<bool, kLensParameters>;
-
-LensVector lens_vector(const CameraModel& camera);
-CameraModel with_lens_vector(CameraModel camera, const LensVector& lens);
 
 struct PlacedBoard {
   BoardSighting sighting;
