@@ -22,6 +22,7 @@ constexpr std::size_t kLeastRows = 20;
 // not average out over views in what they share.
 constexpr double kSystematic = 0.1;
 constexpr int kIterations = 40, kRounds = 30;
+constexpr double kSettledOfSigma = 0.2;  // a mask's coarse rim keeps poses moving by more than settled_px, but by no more than this matters
 
 struct JointFit {
   PosedViewsState state;
@@ -54,9 +55,18 @@ double outline_px(const std::vector<SilhouetteEquations>& silhouettes) {
                          [](double sum, const SilhouetteEquations& one) { return sum + one.outline_px; });
 }
 
+// Steps in units of their own sigma, rms over views and components.
+double rms_of_sigma(const PosedViewSolution& solution) {
+  double sum = 0.0;
+  for (std::size_t v = 0; v < solution.steps.size(); ++v) {
+    sum += solution.steps[v].cwiseAbs2().cwiseQuotient(solution.covariance[v].diagonal()).sum();
+  }
+  return std::sqrt(sum / (6.0 * static_cast<double>(solution.steps.size())));
+}
+
 // The scale of the robust weights shrinks to the residuals' own as in refine_pose; only then do they tell the given poses' spread.
 JointFit refine(const PosedViewEquations& equations, JointFit fit) {
-  double scale_px = fit.scale_px, last_px = 1e300;
+  double scale_px = fit.scale_px, last_px = 1e300, last_of_sigma = 1e300;
   for (int iteration = 0;; ++iteration) {
     fit.silhouettes = equations.silhouettes(fit.state, 4.0 * scale_px, fit.spacing_px, fit.rim);
     const std::vector<SilhouetteEquation> rows = all_rows(fit.silhouettes);
@@ -68,7 +78,7 @@ JointFit refine(const PosedViewEquations& equations, JointFit fit) {
     if (!shrunk) scale_px = fit.scale_px;
     fit.per_px = 1.0 / (std::pow(std::max(fit.sigma_px, 0.02), 2) * fit.correlation);
     fit.system = equations.system(fit.state, fit.silhouettes, fit.scale_px, fit.per_px);
-    fit.converged = shrunk && last_px < settled_px(fit.scale_px);
+    fit.converged = shrunk && (last_px < settled_px(fit.scale_px) || last_of_sigma < kSettledOfSigma);
     if (fit.converged || iteration == kIterations || fit.rows < kLeastRows) return fit;
     const std::vector<PoseStep> from_given = equations.from_given(fit.state);
     if (shrunk) {
@@ -79,6 +89,7 @@ JointFit refine(const PosedViewEquations& equations, JointFit fit) {
     double squared_px = 0.0;
     for (std::size_t v = 0; v < from_given.size(); ++v) squared_px += std::pow(equations.size_px(v, solution.steps[v]), 2);
     last_px = std::sqrt(squared_px / static_cast<double>(from_given.size()));
+    last_of_sigma = rms_of_sigma(solution);
     if (!std::isfinite(last_px)) return fit;
     equations.move(fit.state, solution);
   }
