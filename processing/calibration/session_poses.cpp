@@ -134,7 +134,7 @@ SessionPoses measure_poses(const CapturedInputs& in, const std::vector<ViewFrame
       summary.poses[v].source = "rig description, confirmed";
     }
   }
-  if (moved && result.unknowns.lens >= 0) {
+  if (poses.replaced && result.unknowns.lens >= 0) {
     poses.camera = result.model.camera;
     poses.lens_covariance =
         result.covariance.block<kLensParameters, kLensParameters>(result.unknowns.lens, result.unknowns.lens);
