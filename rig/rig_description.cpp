@@ -82,12 +82,25 @@ CameraLimits read_limits(const TomlTable& table) {
   return limits;
 }
 
-LensDescription read_lens(const TomlTable& table) {
+LensDescription read_lens(const TomlTable& table, const CameraLimits& limits) {
   const std::vector<double> focal = table.numbers("focal_px", 2, NumberRange::positive());
   const std::vector<double> principal = table.numbers("principal_px", 2, NumberRange::finite());
   const std::vector<double> distortion = table.numbers("distortion", 4, NumberRange::finite());
-  return {focal[0],      focal[1],      principal[0],  principal[1],
-          distortion[0], distortion[1], distortion[2], distortion[3]};
+  const auto sigma = [&](const std::string& key, double otherwise_px) {
+    return table.has(key) ? table.number(key, NumberRange::positive()) : otherwise_px;
+  };
+  constexpr double kFocal = 0.01, kPrincipal = 0.01, kDistortion = 0.005;
+  return {focal[0],
+          focal[1],
+          principal[0],
+          principal[1],
+          distortion[0],
+          distortion[1],
+          distortion[2],
+          distortion[3],
+          sigma("focal_sigma_px", kFocal * 0.5 * (focal[0] + focal[1])),
+          sigma("principal_sigma_px", kPrincipal * limits.width_px),
+          sigma("distortion_sigma_px", kDistortion * 0.5 * std::hypot(limits.width_px, limits.height_px))};
 }
 
 SensorDescription read_sensor(const TomlTable& table, int bits) {
@@ -121,7 +134,7 @@ Eigen::Isometry3d read_camera_pose(const TomlTable& table) {
 CameraDescription read_camera(const TomlTable& table) {
   CameraDescription camera;
   camera.limits = read_limits(table);
-  camera.lens = read_lens(table);
+  camera.lens = read_lens(table, camera.limits);
   camera.sensor = read_sensor(table, camera.limits.bits);
   camera.camera_from_rig = read_camera_pose(table);
   table.reject_unread();

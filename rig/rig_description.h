@@ -20,6 +20,11 @@ namespace lumitexel {
 struct LensDescription {
   double focal_x_px = 0, focal_y_px = 0, principal_x_px = 0, principal_y_px = 0;
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0;
+  // How far off these may be, one standard deviation each: of the focal lengths; of the principal point along x and y; of where
+  // a distortion term puts the picture's corner. Not in the file: 1 % of the focal length (data sheets say 1 to 5 %, and
+  // focusing changes it), 1 % of the width (sensors are mounted to a tenth of a millimetre), 0.5 % of half the diagonal
+  // (what lenses for measurement are sold with).
+  double focal_sigma_px = 0, principal_sigma_px = 0, distortion_sigma_px = 0;
 };
 
 // The noise model of a linear sensor; a sample is black_level + electrons / electrons_per_dn, rounded and clipped.

@@ -12,9 +12,10 @@ struct BoardPlacement {
   double bow_m = 0;  // how far its left and right edges are bent towards its printed side: z = bow (x / half width)^2
 };
 
-// placement: 1, 2, … The first faces the camera in the picture's middle at the pivot's distance. The others are spread over
-// the picture, tilted by 10 to 35 degrees, at 0.7 to 1.1 of that distance and wholly in the picture, but for every sixth one.
-// The same world always gives the same. The rig must have a board.
+// placement: 1, 2, … The first faces the camera in the picture's middle at the pivot's distance. The others lie in the picture's
+// corners, then in its middle and at its edges, and so on, all their squares or tags in the picture, tilted by 10 to 35
+// degrees, at 0.7 to 1.1 of that distance (farther if the board is too large for the picture). The same world always gives
+// the same. The rig must have a board.
 BoardPlacement board_placement(const SimulatedWorld& world, int placement);
 
 }  // namespace lumitexel

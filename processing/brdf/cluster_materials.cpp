@@ -50,6 +50,14 @@ void choose_lobes(Mixture& mixture, const Observations& observations, const Lumi
   });
 }
 
+void set_shares(const Responsibilities& r, Mixture& mixture) {
+  std::fill(mixture.share.begin(), mixture.share.end(), 0.0);
+  for (std::size_t l = 0; l < r.lumitexels(); ++l) {
+    for (std::size_t k = 0; k < r.materials; ++k) mixture.share[k] += r.at(l, k) / static_cast<double>(r.lumitexels());
+  }
+  for (double& share : mixture.share) share = std::max(share, 1e-300);  // its logarithm is taken
+}
+
 // Too many materials, settled, and how they were fitted.
 struct Search {
   MaterialFitOptions fit;
@@ -104,6 +112,7 @@ Clustering cluster_materials(const Observations& observations, const LumitexelLi
   MaterialFitOptions settled = options.fit;
   settled.estimate_error = search.fit.estimate_error;
   result.estimated_errors = settled.estimate_error;
+  result.fit = settled;
   std::vector<BrdfFit> fits;
   choose_lobes(mixture, observations, selection, r, settled, fits);
   const LumitexelList all = with_samples(observations);
@@ -114,6 +123,8 @@ Clustering cluster_materials(const Observations& observations, const LumitexelLi
   result.single = fit_material(samples_of(observations, thinned(all, options.final_lumitexels)), observations.channels, &search.whole.brdf,
                                settled).model;
   for (std::size_t k = 0; k < mixture.materials.size(); ++k) result.materials.push_back({mixture.materials[k], fits[k], 0});
+  // The finalists were chosen alike from every material: how common each is, all lumitexels say.
+  set_shares(responsibilities(mixture, observations, all), mixture);
   set_labels(most_probable(responsibilities(mixture, observations, all)), all, observations.lumitexels(), result);
   return result;
 }

@@ -32,6 +32,7 @@ struct Clustering {
   MaterialModel single;                   // one BRDF for everything, where the splitting begins
   std::vector<FittedMaterial> materials;  // fewer than asked for if the samples do not tell so many apart
   bool estimated_errors = false;          // which source it was
+  MaterialFitOptions fit;                 // as every material was fitted at the end
   std::vector<int> label;                 // material of every lumitexel; those without samples get the largest material
 };
 

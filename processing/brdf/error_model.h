@@ -39,7 +39,8 @@ struct ErrorModel {
   const ChannelMatrix& whitening() const { return whitening_; }
   double log_determinant() const { return log_determinant_; }
 
-  // Equation 6 of the paper as an error model: absolute residuals, equal everywhere, squared; intensity (the channels' mean)
+  // Equation 6 of the paper as an error model: absolute residuals, squared, the same everywhere but for the
+  // photograph's own variance, which is small beside one; intensity (the channels' mean)
   // counts `intensity_weight` times as much as colour.
   static ErrorModel paper(int channels, double intensity_weight);
 

@@ -3,7 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 #include <vector>
 
 #include "processing/brdf/ordered_sum.h"
@@ -12,7 +12,7 @@ namespace lumitexel {
 namespace {
 
 constexpr std::size_t kFewestSamples = 30;
-constexpr int kRounds = 6;
+constexpr int kRounds = 4;
 constexpr double kFreedoms[] = {2.5, 3.0, 4.0, 6.0, 10.0, 30.0, ErrorModel::kGaussian};
 constexpr double kLeastRelative = 1e-4, kMostRelative = 1.0;
 constexpr double kLeastFloorShare = 1e-4;  // of the median reflectance
@@ -163,22 +163,37 @@ double independence_of(const Residuals& residuals, const ErrorModel& error) {
   return 1.0 / (1.0 + pairs / count * correlation);
 }
 
+std::size_t nearest_freedom(double freedom) {
+  std::size_t i = 0;
+  while (i + 1 < std::size(kFreedoms) && kFreedoms[i] < freedom) ++i;
+  return i;
+}
+
 }  // namespace
 
 ErrorModel estimate_error_model(const Brdf& brdf, FitSamples samples, const ErrorModel& start) {
   if (samples.size() < kFewestSamples) return start;
   const Residuals residuals = residuals_of(brdf, samples);
   const double floor = least_floor(residuals);
-  ErrorModel best = start;
-  double best_deviance = std::numeric_limits<double>::infinity();
-  ErrorModel current = start;
-  for (const double freedom : kFreedoms) {
-    current.freedom = freedom;
-    refine(residuals, floor, kRounds, current);
-    const double value = total_deviance(residuals, current);
-    if (!(value < best_deviance)) continue;
-    best_deviance = value;
-    best = current;
+  // From the tails of the start towards heavier or lighter ones, for as long as the likelihood rises.
+  const auto with_freedom = [&](std::size_t i, const ErrorModel& from) {
+    ErrorModel error = from;
+    error.freedom = kFreedoms[i];
+    refine(residuals, floor, kRounds, error);
+    return error;
+  };
+  std::size_t at = nearest_freedom(start.freedom);
+  ErrorModel best = with_freedom(at, start);
+  double best_deviance = total_deviance(residuals, best);
+  for (const int step : {1, -1}) {
+    for (std::size_t next = at + static_cast<std::size_t>(step); next < std::size(kFreedoms); next += static_cast<std::size_t>(step)) {
+      const ErrorModel trial = with_freedom(next, best);
+      const double deviance = total_deviance(residuals, trial);
+      if (!(deviance < best_deviance)) break;
+      best = trial;
+      best_deviance = deviance;
+      at = next;
+    }
   }
   best.independence = independence_of(residuals, best);
   return best;

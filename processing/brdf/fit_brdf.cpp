@@ -29,7 +29,11 @@ Descent levenberg_marquardt(const BrdfProblem& problem, const BrdfParameters& la
     ++descent.iterations;
     const std::vector<bool> held = layout.held(descent.values, equations.gradient);
     Eigen::VectorXd trial = descent.values + damped_step(equations, held, damping);
-    if (!trial.allFinite()) trial = descent.values;
+    if (!trial.allFinite()) {
+      damping *= 10.0;
+      if (damping > kMostDamping) break;
+      continue;
+    }
     layout.clamp(trial);
     const double cost = problem.cost(trial);
     if (cost <= equations.cost) {

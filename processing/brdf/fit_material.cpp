@@ -1,5 +1,6 @@
 #include "processing/brdf/fit_material.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -71,7 +72,8 @@ MaterialFit with_lobe(const MaterialFit& before, FitSamples samples, const Mater
 
 // `smaller` or `larger`, by the criterion; true for larger.
 bool prefers(MaterialFit& smaller, MaterialFit& larger, FitSamples samples, const MaterialFitOptions& options) {
-  const double independence = options.estimate_error ? larger.model.error.independence : 1.0;
+  const MaterialFit& richer = smaller.model.brdf.lobes.size() > larger.model.brdf.lobes.size() ? smaller : larger;
+  const double independence = options.estimate_error ? richer.model.error.independence : 1.0;
   set_criterion(smaller, samples, independence, options);
   set_criterion(larger, samples, independence, options);
   return larger.criterion < smaller.criterion;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "processing/brdf/estimate_error.h"
 #include "processing/brdf/left_out_error.h"
@@ -104,13 +105,16 @@ Merge try_merge(const Mixture& mixture, const Observations& observations, const 
   return merge;
 }
 
-Merge cheapest_merge(const Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
-                     const Responsibilities& r, const MaterialFitOptions& options) {
+// Nothing if `only_where_not_needed` and the evidence is for keeping every pair apart.
+std::optional<Merge> cheapest_merge(const Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
+                                    const Responsibilities& r, bool only_where_not_needed, const MaterialFitOptions& options) {
   const std::vector<Pair> pairs = likely_pairs(mixture, observations);
   std::vector<Merge> merges(pairs.size());
   oneapi::tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t p) {
     merges[p] = try_merge(mixture, observations, lumitexels, r, pairs[p], options);
   });
+  if (only_where_not_needed) std::erase_if(merges, [](const Merge& merge) { return merge.needed_apart; });
+  if (merges.empty()) return std::nullopt;
   return *std::min_element(merges.begin(), merges.end(), [](const Merge& a, const Merge& b) { return a.loss < b.loss; });
 }
 
@@ -148,9 +152,9 @@ void merge_until(int materials, bool stop_where_needed, Mixture& mixture, const 
                  const LumitexelList& lumitexels, const MaterialFitOptions& fit, const std::function<void(int)>& after) {
   Responsibilities r = responsibilities(mixture, observations, lumitexels);
   while (static_cast<int>(mixture.materials.size()) > std::max(1, materials)) {
-    const Merge merge = cheapest_merge(mixture, observations, lumitexels, r, fit);
-    if (stop_where_needed && merge.needed_apart) break;
-    apply(merge, mixture);
+    const std::optional<Merge> merge = cheapest_merge(mixture, observations, lumitexels, r, stop_where_needed, fit);
+    if (!merge) break;
+    apply(*merge, mixture);
     r = maximise_expectation(mixture, observations, lumitexels, fit, kRounds);
     after(static_cast<int>(mixture.materials.size()));
   }

@@ -13,9 +13,9 @@
 namespace lumitexel {
 namespace {
 
-constexpr double kSettled = 2e-6;         // relative change of the likelihood at which the iteration ends
+constexpr double kSettled = 1e-5;         // change of log likelihood a sample at which the iteration ends
 constexpr double kLeastProbability = 1e-3;  // below it a lumitexel is not worth its time in a material's fit
-constexpr int kStepsPerRound = 3;         // of Levenberg-Marquardt
+constexpr int kStepsPerRound = 2;         // of Levenberg-Marquardt
 
 MaterialModel maximised(const MaterialModel& model, FitSamples samples, const MaterialFitOptions& options, bool first_round) {
   BrdfFitOptions fit = refit_options(model, options);
@@ -119,11 +119,13 @@ std::vector<FitSample> samples_of(const Observations& observations, const Lumite
 Responsibilities maximise_expectation(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
                                       const MaterialFitOptions& options, int rounds) {
   Responsibilities r = responsibilities(mixture, observations, lumitexels);
+  double samples = 0.0;
+  for (const std::size_t i : lumitexels) samples += static_cast<double>(observations.of(i).size());
   for (int round = 0; round < rounds; ++round) {
     const double before = r.log_likelihood;
     const bool vanished = maximise(mixture, observations, lumitexels, r, options, round == 0);
     r = responsibilities(mixture, observations, lumitexels);
-    if (!vanished && std::abs(r.log_likelihood - before) <= kSettled * std::abs(before)) break;
+    if (!vanished && std::abs(r.log_likelihood - before) <= kSettled * samples) break;
   }
   return r;
 }

@@ -119,6 +119,7 @@ Clustering paper_clustering(const Observations& observations, const LumitexelLis
   const MaterialFitOptions fit = as_published(observations, options);
   const PaperClusterer clusterer(observations, fit);
   Clustering result;
+  result.fit = fit;
   Materials materials{{clusterer.fit(selection, nullptr).brdf}, {}, {}};
   clusterer.assign(selection, materials);
   for (int found = 1; found < options.materials && clusterer.split(selection, materials); ++found) report(found + 1);

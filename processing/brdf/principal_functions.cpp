@@ -136,9 +136,11 @@ LumitexelList learnt_from(const Observations& observations, const LumitexelList&
 PrincipalFunctions principal_functions(const Observations& observations, const LumitexelList& members, const std::vector<Brdf>& basis,
                                        const ErrorModel& error, const PrincipalOptions& options) {
   PrincipalFunctions result{basis, 0.0, 0.0, 0};
+  if (nothing_varies(options.prior)) return result;  // texels are the material, whatever the functions
   const PrincipalProblem problem(observations, learnt_from(observations, members, options.most_lumitexels), basis, error, options);
   if (problem.lumitexels() == 0) return result;
   Eigen::VectorXd values = problem.start(basis);
+  result.basis = problem.basis_at(values, basis);  // within the bounds
   std::vector<BasisVector> weights;
   double cost = problem.project(result.basis, weights);
   result.cost_before = cost / static_cast<double>(problem.lumitexels());

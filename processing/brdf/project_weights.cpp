@@ -14,8 +14,6 @@ namespace {
 constexpr std::size_t kMostTried = 1500;  // lumitexels that the choice of the prior looks at
 constexpr double kDiffuseWidths[] = {0.05, 0.1, 0.2, 0.4, 0.8};
 constexpr double kGlossWidths[] = {0.01, 0.03, 0.1, 0.3, 1.0};
-bool nothing_varies(const TexelPrior& prior) { return prior.diffuse_width <= 0.0 && prior.gloss_width <= 0.0; }
-
 BasisVector material_alone(Eigen::Index n) {
   BasisVector weights = BasisVector::Zero(n);
   weights[0] = 1.0;
@@ -74,9 +72,9 @@ double tempered(double squares, int channels) {
 }
 
 // Adds the cost of each sample of the texel, predicted from the others, per candidate.
-void leave_one_out(std::span<const Observation> samples, int channels, const std::vector<Brdf>& basis,
+void leave_one_out(std::span<const Observation> samples, int channels, const std::vector<Brdf>& basis, const Brdf& material,
                    const ErrorModel& error, const Candidates& candidates, std::vector<LeftOut>& sums) {
-  const TexelSystem system = texel_system(samples, channels, basis, basis[0], error);
+  const TexelSystem system = texel_system(samples, channels, basis, material, error);
   for (const SampleEquations& left_out : system.samples) {
     const BasisMatrix matrix = system.matrix - left_out.whitened.transpose() * left_out.whitened;
     const BasisVector right = system.right - left_out.whitened.transpose() * left_out.target;
@@ -97,14 +95,14 @@ void leave_one_out(std::span<const Observation> samples, int channels, const std
 
 }  // namespace
 
-TexelWeights project_texel(std::span<const Observation> samples, int channels, const std::vector<Brdf>& basis,
+TexelWeights project_texel(std::span<const Observation> samples, int channels, const std::vector<Brdf>& basis, const Brdf& material,
                            const ErrorModel& error, const TexelPrior& prior) {
   TexelWeights result;
   result.weight.assign(basis.size(), 0.0f);
   result.weight[0] = 1.0f;
   result.relative_sigma = static_cast<float>(samples.empty() ? 1.0 : error.relative);
   if (samples.empty() || nothing_varies(prior)) return result;
-  const TexelSystem system = texel_system(samples, channels, basis, basis[0], error);
+  const TexelSystem system = texel_system(samples, channels, basis, material, error);
   BasisMatrix matrix = system.matrix;
   BasisVector right = system.right;
   PriorPrecision(basis, channels).add_to(prior, matrix, right);
@@ -118,7 +116,8 @@ TexelWeights project_texel(std::span<const Observation> samples, int channels, c
 }
 
 PriorChoice choose_prior(const Observations& observations, const std::vector<std::size_t>& members,
-                         const std::vector<Brdf>& basis, const ErrorModel& error) {
+                         const std::vector<Brdf>& basis, const Brdf& material,
+                         const ErrorModel& error) {
   const Candidates candidates{candidate_priors(), PriorPrecision(basis, observations.channels)};
   std::vector<std::size_t> tried;
   for (const std::size_t i : members) {
@@ -128,7 +127,7 @@ PriorChoice choose_prior(const Observations& observations, const std::vector<std
   std::vector<std::vector<LeftOut>> sums((tried.size() + stride - 1) / stride,
                                          std::vector<LeftOut>(candidates.priors.size()));
   oneapi::tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t k) {
-    leave_one_out(observations.of(tried[k * stride]), observations.channels, basis, error, candidates, sums[k]);
+    leave_one_out(observations.of(tried[k * stride]), observations.channels, basis, material, error, candidates, sums[k]);
   });
   PriorChoice choice;
   std::vector<LeftOut> total(candidates.priors.size());

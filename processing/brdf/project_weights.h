@@ -29,9 +29,16 @@ struct TexelWeights {
                                  // own where nothing may vary; 1 without samples or where the bases cannot be told apart
 };
 
-// Weights of one texel. basis[0] is the material itself.
-TexelWeights project_texel(std::span<const Observation> samples, int channels, const std::vector<Brdf>& basis,
+inline bool nothing_varies(const TexelPrior& prior) { return prior.diffuse_width <= 0.0 && prior.gloss_width <= 0.0; }
+
+// Weights of one texel. basis[0] is the material itself, or what principal function analysis made of it; samples are weighted by the
+// error model at the prediction of `material`, so that what is moved does not change the measure.
+TexelWeights project_texel(std::span<const Observation> samples, int channels, const std::vector<Brdf>& basis, const Brdf& material,
                            const ErrorModel& error, const TexelPrior& prior);
+inline TexelWeights project_texel(std::span<const Observation> samples, int channels, const std::vector<Brdf>& basis,
+                                  const ErrorModel& error, const TexelPrior& prior) {
+  return project_texel(samples, channels, basis, basis[0], error, prior);
+}
 
 struct PriorChoice {
   TexelPrior prior;
@@ -43,7 +50,11 @@ struct PriorChoice {
 // The pair of widths whose left-out samples are predicted best in the error model's sense, among those that do not
 // predict them worse than the material alone does in plain squares, which is what a rendering shows.
 // members: lumitexels of the material; at most some thousand of them are tried.
-PriorChoice choose_prior(const Observations& observations, const std::vector<std::size_t>& members,
-                         const std::vector<Brdf>& basis, const ErrorModel& error);
+PriorChoice choose_prior(const Observations& observations, const std::vector<std::size_t>& members, const std::vector<Brdf>& basis,
+                         const Brdf& material, const ErrorModel& error);
+inline PriorChoice choose_prior(const Observations& observations, const std::vector<std::size_t>& members,
+                                const std::vector<Brdf>& basis, const ErrorModel& error) {
+  return choose_prior(observations, members, basis, basis[0], error);
+}
 
 }  // namespace lumitexel

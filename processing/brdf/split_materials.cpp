@@ -9,8 +9,8 @@
 namespace lumitexel {
 namespace {
 
-constexpr std::size_t kMostLumitexels = 1500;  // that a split is tried on
-constexpr int kRounds = 6;
+constexpr std::size_t kMostSamples = 8000;  // that a split is tried on
+constexpr int kRounds = 5;
 constexpr std::size_t kWorstShare = 8;  // one in so many, the worst explained, may begin a material of their own
 
 struct Part {  // a material and the lumitexels that are most probably its own
@@ -22,6 +22,12 @@ struct Split {
   Part first, second;
   double gain = 0;  // of log likelihood, over all members
 };
+
+std::size_t count_samples(const Observations& observations, const LumitexelList& lumitexels) {
+  std::size_t count = 0;
+  for (const std::size_t i : lumitexels) count += observations.of(i).size();
+  return count;
+}
 
 // r: of the material alone.
 Brdf fit_of_worst(const MaterialModel& model, const Observations& observations, const LumitexelList& members,
@@ -56,7 +62,10 @@ void share_out(const LumitexelList& members, const Responsibilities& r, Split& s
 }
 
 std::optional<Split> best_split(const Part& part, const Observations& observations, const MaterialFitOptions& options) {
-  const LumitexelList members = thinned(part.members, kMostLumitexels);
+  if (part.members.empty()) return std::nullopt;
+  const std::size_t samples = count_samples(observations, part.members);
+  const std::size_t most = part.members.size() * kMostSamples / std::max(samples, kMostSamples);
+  const LumitexelList members = thinned(part.members, most);
   if (static_cast<double>(members.size()) < 2.0 * kFewestMembers) return std::nullopt;
   const Responsibilities alone = responsibilities({{part.model}, {1.0}}, observations, members);
   std::optional<Split> best;
@@ -66,10 +75,10 @@ std::optional<Split> best_split(const Part& part, const Observations& observatio
     const double gain = (r.log_likelihood - alone.log_likelihood) * static_cast<double>(part.members.size()) /
                         static_cast<double>(members.size());
     if (halves.materials.size() < 2 || (best && gain <= best->gain) || gain <= 0.0) continue;
-    best = Split{{halves.materials[0], {}}, {halves.materials[1], {}}, gain};
-    share_out(part.members, responsibilities(halves, observations, part.members), *best);
-    const std::size_t fewest = std::min(best->first.members.size(), best->second.members.size());
-    if (static_cast<double>(fewest) < 0.5 * kFewestMembers) best.reset();
+    Split split{{halves.materials[0], {}}, {halves.materials[1], {}}, gain};
+    share_out(part.members, responsibilities(halves, observations, part.members), split);
+    const std::size_t fewest = std::min(split.first.members.size(), split.second.members.size());
+    if (static_cast<double>(fewest) >= 0.5 * kFewestMembers) best = std::move(split);
   }
   return best;
 }

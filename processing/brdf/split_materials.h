@@ -8,7 +8,7 @@ namespace lumitexel {
 
 // Splits where it gains most likelihood, until `most` materials are reached or none gains: along the
 // first eigenvector of the material's covariance (eq. 9 of the paper), along the direction in which its lumitexels' brightness and
-// colour vary most, or by parting from those that it explains worst. Looks at no more than some thousand lumitexels a material.
+// colour vary most, or by parting from those that it explains worst. Looks at no more than some thousand samples of a material.
 Mixture split_materials(const MaterialFit& whole, const Observations& observations, const LumitexelList& lumitexels, int most,
                         const MaterialFitOptions& options);
 

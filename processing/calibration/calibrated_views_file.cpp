@@ -10,7 +10,7 @@ namespace lumitexel {
 namespace {
 
 using nlohmann::json;
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 
 json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 Eigen::Vector3d vector_from(const json& j) {

@@ -8,7 +8,8 @@ const std::vector<CalibrationStep>& all_calibration_steps() {
   static const std::vector<CalibrationStep> all{
       CalibrationStep::PhotonTransfer, CalibrationStep::Response, CalibrationStep::DarkScale,
       CalibrationStep::Lens,           CalibrationStep::Vignetting, CalibrationStep::Pose,
-      CalibrationStep::CardPose,       CalibrationStep::LampDrift,  CalibrationStep::LampPattern};
+      CalibrationStep::Joint,          CalibrationStep::CardPose,   CalibrationStep::LampDrift,
+      CalibrationStep::LampPattern};
   return all;
 }
 
@@ -20,6 +21,7 @@ const char* to_string(CalibrationStep step) {
     case CalibrationStep::Lens: return "lens";
     case CalibrationStep::Vignetting: return "vignetting";
     case CalibrationStep::Pose: return "pose";
+    case CalibrationStep::Joint: return "joint";
     case CalibrationStep::CardPose: return "card_pose";
     case CalibrationStep::LampDrift: return "lamp_drift";
     case CalibrationStep::LampPattern: return "lamp_pattern";

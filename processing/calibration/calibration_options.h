@@ -14,6 +14,7 @@ enum class CalibrationStep {
   Lens,            // from board shots or a lens calibration; else the rig's description
   Vignetting,      // from flat fields; else none
   Pose,            // from silhouettes and tags; else the rig's geometry
+  Joint,           // lens and poses once more, with the highlights; else lights are solved with the lens as it is
   CardPose,        // from the tags on the card's frame; else the rig's description
   LampDrift,       // from the card in every view; else a lamp that never changes
   LampPattern,     // from the board under the point light; else equal in all directions

@@ -35,10 +35,11 @@ struct SensorSummary {
 };
 
 struct LensSummary {
-  std::string source = "rig description";  // else "boards of this session"
+  std::string source = "rig description";  // else "boards of this session"; of imports "given", "silhouettes"
   std::optional<double> reprojection_px;   // rms
   std::vector<double> params{};            // focal x, y, principal x, y (px), k1, k2, p1, p2; empty for imports
-  std::vector<double> sigma{};             // of each; empty if unknown
+  std::vector<double> sigma{};             // of each, or of the first four; empty if unknown
+  std::optional<double> corner_sigma_px;   // of where the lens puts a direction, in the corner where it knows least
   int boards = 0;                          // used
   std::vector<std::string> notes{};        // boards rejected and why, parts of the picture without boards, refusals
   std::optional<double> corner_transmission, corner_transmission_sigma;  // against the principal point
@@ -46,11 +47,20 @@ struct LensSummary {
 
 struct PoseSummary {
   std::string view;
-  std::string source = "rig description";           // else "silhouette", "silhouette and tags"
+  std::string source = "rig description";           // else "silhouette", "silhouette and tags", "given"
   std::optional<double> sigma_m, sigma_deg;          // of |shift| and |turn| of the object before the camera
   std::optional<double> silhouette_px;               // median distance between the mesh's outline and the picture's
   int tags = 0;
   std::string dominant{};                            // what most of the shift's variance comes from
+  // Of imported poses: the same distance at the given pose, the chi-square (six degrees of freedom) by which the silhouette contradicts
+  // it, and why nothing was measured or the silhouette does not determine the pose.
+  std::optional<double> given_px{}, contradiction{};
+  std::string problem{};
+};
+
+struct JointSummary {
+  bool tried = false, taken = false;  // highlights asked about the lens; what they say was significant
+  double chi2_gain = 0;               // by which chi square of highlights and prior fell
 };
 
 struct LampSummary {
@@ -81,6 +91,8 @@ struct CalibrationSummary {
   LensSummary lens;
   std::vector<PoseSummary> poses;  // in the order of the session's views
   std::string pose_problem;        // why poses are the rig description's; empty if they are not, or nothing was tried
+  JointSummary joint;
+  std::optional<double> rim_offset_px, rim_offset_sigma_px;  // imports: masks' rims lie outside of the mesh's outline by this
   LampSummary lamp;
   std::vector<UncertaintyShare> shares;  // sums to 1 for each quantity
   std::vector<std::string> pictures;     // PNG files beside the photographs, "lens_coverage.png"

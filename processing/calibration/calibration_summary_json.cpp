@@ -31,15 +31,18 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SensorSummary, source, electrons_per_dn, read
                                    saturation_dn, electrons_per_dn_sigma, read_noise_dn_sigma, black_level_dn_sigma,
                                    saturation_dn_sigma, linear, coldest_c, warmest_c, brackets_with_scaled_darks,
                                    brackets_with_drifted_darks, least_dark_scale, largest_dark_scale, notes)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LensSummary, source, reprojection_px, params, sigma, boards, notes, corner_transmission,
-                                   corner_transmission_sigma)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PoseSummary, view, source, sigma_m, sigma_deg, silhouette_px, tags, dominant)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LensSummary, source, reprojection_px, params, sigma, corner_sigma_px, boards, notes,
+                                   corner_transmission, corner_transmission_sigma)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PoseSummary, view, source, sigma_m, sigma_deg, silhouette_px, tags, dominant, given_px,
+                                   contradiction, problem)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LampSummary, drifts, factor, factor_sigma, card_views, card_outliers,
                                    pattern_parameters, at_10_deg, card_source)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JointSummary, tried, taken, chi2_gain)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(UncertaintyShare, quantity, source, share)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CalibrationSummary, lights, sphere_residual_px, sphere_sigma_scale, arm_scatter_m,
                                    arm_residual_m, intensity, gray_card_pixel_scatter, scale_sigma, hot_pixels,
-                                   views_without_silhouette, sensor, lens, poses, pose_problem, lamp, shares, pictures)
+                                   views_without_silhouette, sensor, lens, poses, pose_problem, joint, rim_offset_px,
+                                   rim_offset_sigma_px, lamp, shares, pictures)
 
 nlohmann::json summary_json(const CalibrationSummary& summary) { return summary; }
 CalibrationSummary summary_from_json(const nlohmann::json& json) { return json.get<CalibrationSummary>(); }

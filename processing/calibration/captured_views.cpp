@@ -12,6 +12,7 @@
 #include "processing/calibration/pose/joint_refinement.h"
 #include "processing/calibration/pose/object_mask.h"
 #include "processing/calibration/session_card.h"
+#include "processing/calibration/session_joint.h"
 #include "processing/calibration/session_lamp.h"
 #include "processing/calibration/session_lens.h"
 #include "processing/calibration/session_lights.h"
@@ -25,7 +26,7 @@ namespace lumitexel {
 namespace {
 
 // Part of the key: change it with anything that changes what a calibration gives.
-constexpr const char* kMethod = "captured calibration 3";
+constexpr const char* kMethod = "captured calibration 4";
 // Room for the mask about the mesh's picture: a coarse mesh's error, and that of a pose that nobody measured.
 constexpr int kRegisteredMargin_px = 4, kNominalMargin_px = 8;
 
@@ -48,6 +49,7 @@ class SessionCalibration {
     if (records_.empty()) return;
     tags_ = detect_session_tags(reader_, records_, in.rig.tags, lens_.camera, progress);
     poses_ = measure_poses(in, records_, reader_, lens_, tags_, options, summary_, progress);
+    take_lens_of_poses();
   }
 
   std::pair<CalibratedSession, CalibrationSummary> run() {
@@ -65,6 +67,15 @@ class SessionCalibration {
   }
 
  private:
+  // Poses and lens were found together and make up for each other: neither is right with another.
+  void take_lens_of_poses() {
+    if (!poses_.camera) return;
+    lens_.camera = *poses_.camera;
+    lens_.covariance = poses_.lens_covariance;
+    summary_.lens.notes.emplace_back("refined together with the poses");
+    state_lens(lens_, summary_.lens);
+  }
+
   Eigen::Isometry3d rig_from_world(std::size_t v) const {
     return in_.rig.camera.camera_from_rig.inverse() * poses_.camera_from_world[v];
   }
@@ -72,7 +83,8 @@ class SessionCalibration {
   SessionLights measure_lights_of_views() {
     std::vector<SphereShots> shots;
     for (const ViewFrames& view : records_) shots.push_back(view.spheres);
-    const LightSolution spheres = measure_lights(reader_, shots, lens_.camera, in_.rig, progress_);
+    const SphereHighlights seen = read_sphere_highlights(reader_, shots, lens_.camera, in_.rig, progress_);
+    const LightSolution spheres = refine_jointly(seen, in_, options_, lens_, poses_, summary_);
     SessionLights lights = align_lights(spheres, records_, in_.plan, in_.rig, in_.rig.camera.camera_from_rig);
     summary_.sphere_residual_px = spheres.residual_px;
     summary_.sphere_sigma_scale = spheres.sigma_scale;
@@ -103,7 +115,8 @@ class SessionCalibration {
     for (std::size_t v = 0; v < records_.size(); ++v) {
       const ArmPrediction& light = lights.in_rig[v];
       in_camera.push_back({v, in_.rig.camera.camera_from_rig * light.position_in_rig,
-                           turn * light.covariance * turn.transpose() + shared2 * Eigen::Matrix3d::Identity()});
+                           turn * light.covariance * turn.transpose() + shared2 * Eigen::Matrix3d::Identity(),
+                           lights.spheres.lights[v].with_lens});
       own2 += light.covariance.trace() / 3.0 / static_cast<double>(records_.size());
     }
     std::vector<double> sigmas;

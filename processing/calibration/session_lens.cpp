@@ -8,6 +8,8 @@
 #include "processing/calibration/lens/board_detection.h"
 #include "processing/calibration/lens/check_lens.h"
 #include "processing/calibration/lens/lens_pictures.h"
+#include "processing/calibration/lens/lens_prior.h"
+#include "processing/calibration/lens/lens_sigma.h"
 #include "processing/image/raster_file.h"
 
 namespace lumitexel {
@@ -44,9 +46,7 @@ void describe(const LensCalibration& calibration, LensSummary& lens) {
   }
   lens.source = "boards of this session";  // in place of a lens calibrated before, if that was taken
   lens.boards = 0;
-  lens.sigma.clear();
   lens.reprojection_px = calibration.rms_px;
-  for (int i = 0; i < kLensParameters; ++i) lens.sigma.push_back(std::sqrt(calibration.covariance(i, i)));
   for (const BoardFit& board : calibration.boards) lens.boards += board.rejected.empty();
 }
 
@@ -81,7 +81,6 @@ void take_record(const LensRecord& record, const CapturedInputs& in, std::int64_
   summary.source = "lens calibration " + lens_fingerprint(record).substr(0, 12);
   summary.reprojection_px = record.rms_px;
   summary.boards = record.boards_used;
-  for (int i = 0; i < kLensParameters; ++i) summary.sigma.push_back(std::sqrt(record.covariance(i, i)));
 }
 
 // Fewer boards than this check a lens, they do not calibrate one, where one calibrated before is at hand.
@@ -90,8 +89,8 @@ constexpr std::size_t kEnoughToCalibrate = 5;
 void measure_boards(const std::vector<int>& placements, const std::vector<BoardSighting>& sightings,
                     const CapturedInputs& in, const std::filesystem::path& directory, SessionLens& lens,
                     CalibrationSummary& summary) {
-  const LensCalibration calibration =
-      calibrate_lens(in.nominal_camera.width_px, in.nominal_camera.height_px, sightings);
+  const LensCalibration calibration = calibrate_lens(in.nominal_camera.width_px, in.nominal_camera.height_px, sightings,
+                                                     lens_prior_of(in.rig.camera));
   describe(calibration, summary.lens);
   if (!calibration.usable()) return;
   lens.camera = calibration.camera;
@@ -142,6 +141,15 @@ void keep_record(const CapturedFrames& frames, const CapturedInputs& in, const s
 
 }  // namespace
 
+void state_lens(const SessionLens& lens, LensSummary& summary) {
+  const LensVector params = lens_vector(lens.camera);
+  summary.params.assign(params.begin(), params.end());
+  if (!lens.covariance) return;
+  const LensVector sigma = lens.covariance->diagonal().cwiseSqrt();
+  summary.sigma.assign(sigma.begin(), sigma.end());
+  summary.corner_sigma_px = corner_sigma_px(lens.camera, *lens.covariance);
+}
+
 SessionLens measure_lens(const CapturedFrames& frames, const CapturedInputs& in, const RadianceReader& reader,
                          const CalibrationOptions& options, const std::filesystem::path& directory,
                          CalibrationSummary& summary, Progress& progress) {
@@ -162,8 +170,7 @@ SessionLens measure_lens(const CapturedFrames& frames, const CapturedInputs& in,
     measure_vignetting(frames, reader, directory, lens, summary, progress);
   }
   if (!options.takes(CalibrationStep::Vignetting)) lens.vignetting.reset();
-  const LensVector params = lens_vector(lens.camera);
-  summary.lens.params.assign(params.begin(), params.end());
+  state_lens(lens, summary.lens);
   keep_record(frames, in, directory, lens);
   return lens;
 }

@@ -115,7 +115,8 @@ bool contradicts(const TurntableRegistration& result, const std::vector<Eigen::I
 SessionPoses measure_poses(const CapturedInputs& in, const std::vector<ViewFrames>& views, const RadianceReader& reader,
                            const SessionLens& lens, const std::vector<std::vector<DetectedTag>>& tags,
                            const CalibrationOptions& options, CalibrationSummary& summary, Progress& progress) {
-  SessionPoses poses{nominal_poses(in, views), std::nullopt, false};
+  SessionPoses poses;
+  poses.camera_from_world = nominal_poses(in, views);
   for (const PlannedView& view : in.plan.views) summary.poses.emplace_back().view = view.name;
   if (!options.takes(CalibrationStep::Pose)) return poses;
   TurntableRegistration result = register_session(in, views, reader, lens, tags, progress);
@@ -124,14 +125,19 @@ SessionPoses measure_poses(const CapturedInputs& in, const std::vector<ViewFrame
     return poses;
   }
   poses.registered = true;
-  const bool moved = contradicts(result, poses.camera_from_world, extent_of(in.mesh).centre);
+  poses.replaced = contradicts(result, poses.camera_from_world, extent_of(in.mesh).centre);
   for (std::size_t v = 0; v < views.size(); ++v) {
     summary.poses[v] = summarise(result.views[v], in.plan.views[v].name, on_table(tags[v], in.rig.tags));
-    if (moved) {
+    if (poses.replaced) {
       poses.camera_from_world[v] = result.views[v].camera_from_mesh;
     } else {
       summary.poses[v].source = "rig description, confirmed";
     }
+  }
+  if (poses.replaced && result.unknowns.lens >= 0) {
+    poses.camera = result.model.camera;
+    poses.lens_covariance =
+        result.covariance.block<kLensParameters, kLensParameters>(result.unknowns.lens, result.unknowns.lens);
   }
   poses.registration = std::move(result);
   return poses;

@@ -19,6 +19,10 @@ namespace lumitexel {
 struct SessionPoses {
   std::vector<Eigen::Isometry3d> camera_from_world;  // by view; world: the mesh's frame
   std::optional<TurntableRegistration> registration;  // empty if it was not tried or did not come to an end
+  // The lens as the same least squares has it: with these poses and no others. Only where the lens was not taken as exact.
+  std::optional<CameraModel> camera;
+  std::optional<LensMatrix> lens_covariance;
+  bool replaced = false;   // the registration contradicts the description, and its poses are taken
   bool registered = false;  // false: as the rig's description has it, and nobody knows how well that is
 };
 

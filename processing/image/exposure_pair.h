@@ -15,7 +15,7 @@ struct DarkedExposure {
 
 struct DifferenceBin {
   double signal_dn = 0;           // mean of the merged signal, on the longer exposure's scale
-  double median_dn = 0;           // of d = ratio * x1 - x2
+  double median_dn = 0;           // the trimmed mean of d = ratio * x1 - x2
   double variance_dn2 = 0;        // of d about it, trimmed and corrected
   double pixels = 0, trimmed = 0;
 };
@@ -25,7 +25,7 @@ struct PairBins {
   std::vector<DifferenceBin> bins;
 };
 
-// Equal numbers of pixels a bin, ordered by signal; pixels that may be clipped or are hot are left out. Whether one
+// Equal numbers of pixels a bin, ordered by what their neighbours see; pixels that may be clipped or are hot are left out. Whether one
 // may be clipped is asked of its merged signal, not of its samples. Bins of fewer than 200 pixels are not made.
 PairBins difference_bins(const DarkedExposure& shorter, const DarkedExposure& longer, const LinearSensor& sensor,
                          int bins);

@@ -13,8 +13,8 @@ namespace {
 constexpr int kBinsOfAPair = 24;
 constexpr double kWorstRelativeSigma = 0.05;
 constexpr double kRounding_dn2 = 1.0 / 12.0;
-// Variance of the trimmed variance over that of the plain one, for normal noise: cutting at three sigma costs a little.
-constexpr double kTrimmingLoss = 1.09;
+// Variance of the trimmed variance over that of the plain one, for normal noise: cutting at four sigma costs little.
+constexpr double kTrimmingLoss = 1.01;
 constexpr double kLeastLinearitySignal = 0.01;  // of the range: below it the black level's error is larger than the sensor's
 constexpr std::size_t kFewestClipped = 20;
 constexpr double kWidestPile = 0.02;  // of the range

@@ -4,11 +4,11 @@
 // no scene in it. Its variance grows with the signal S = x2's expectation,
 //     var d = (a + 1) S / g + a^2 v1 + v2,
 // where g is in electrons per DN and v1, v2 are the darks' parts: read noise, rounding, dark current and the noise of the
-// subtracted means (Janesick, "Photon Transfer", 2007, with frame pairs of unequal exposure). Pixels are binned by their
-// merged radiance, which is uncorrelated with d, so that binning prefers no sign of the noise; the variance in a bin is
-// taken about the bin's median and trimmed at three standard deviations (corrected for what that cuts off of normal
-// noise), so that edges that moved and flickering highlights do not count. Lines through all bins and the darks' own
-// variances give g and the read noise at once.
+// subtracted means (Janesick, "Photon Transfer", 2007, with frame pairs of unequal exposure). Pixels are binned and weighted by
+// what their neighbours see: by the pixel's own signal they would be chosen by their own noise. In a bin, which may span decades of
+// signal, signal and variance are means with the same weights; the variance is taken about the mean and trimmed at four
+// standard deviations (corrected for what that cuts off of normal noise), so that edges that moved and flickering
+// highlights do not count. Lines through all bins and the darks' own variances give g and the read noise at once.
 #pragma once
 
 #include <string>
@@ -34,7 +34,7 @@ struct PhotonTransfer {
   SensorValue electrons_per_dn, read_noise_dn, black_level_dn, clip_dn;
   double gain_read_correlation = 0;     // of the errors of electrons_per_dn and read_noise_dn
   double chi_square_per_freedom = 0;    // of the lines; 0 without light
-  double trimmed_share = 0;             // of the differences; 0.0027 for normal noise
+  double trimmed_share = 0;             // of the differences; 0.00006 for normal noise
   std::vector<LinearityPoint> linearity;
   double largest_nonlinearity = 0, largest_nonlinearity_sigma = 0;  // relative, over `linearity`, of its significant points
   bool looks_linear = true;             // no more of `linearity` stands out by three sigma than chance explains

@@ -119,7 +119,7 @@ Lobe lobe_from(BrdfFamily name, const Field& field) {
   Lobe lobe;
   const Field log_strength = field[keys.log_strength];
   lobe.log_strength = log_strength.is_null() ? -std::numeric_limits<double>::infinity() : log_strength.number();
-  if (family.aims) lobe.aim = field["phi_rad"].number();
+  if (family.aims) lobe.aim = field["phi_rad"].number(family.least_aim - kBoundSlack, family.most_aim + kBoundSlack);
   lobe.log_shape = field[keys.log_shape].number(family.least_log_shape - kBoundSlack, family.most_log_shape + kBoundSlack);
   check_agreement(field[keys.strength], lobe.log_strength);
   check_agreement(field[keys.shape], lobe.log_shape);

@@ -71,10 +71,10 @@ std::vector<LumitexelList> members_of(const Clustering& clustering) {
 }
 
 PriorChoice prior_for(const Observations& observations, const LumitexelList& members, const std::vector<Brdf>& basis,
-                      const ErrorModel& error, const FitOptions& options) {
+                      const MaterialModel& material, const FitOptions& options) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (options.plain_projection) return {{kInfinity, kInfinity}, 0.0, 0.0, 0};
-  return choose_prior(observations, members, basis, error);
+  return choose_prior(observations, members, basis, material.brdf, material.error);
 }
 
 std::vector<TexelWeights> project_all(const Observations& observations, const Clustering& clustering, const Model& model,
@@ -84,12 +84,12 @@ std::vector<TexelWeights> project_all(const Observations& observations, const Cl
   progress.begin("texel weights", static_cast<std::int64_t>(model.materials.size()), "materials");
   for (std::size_t j = 0; j < members.size(); ++j) {
     const auto& basis = model.materials[j].basis;
-    const ErrorModel& error = clustering.materials[j].model.error;
-    summary.prior.push_back(prior_for(observations, members[j], basis, error, options));
+    const MaterialModel& material = clustering.materials[j].model;
+    summary.prior.push_back(prior_for(observations, members[j], basis, material, options));
     const TexelPrior prior = summary.prior.back().prior;
     oneapi::tbb::parallel_for(std::size_t{0}, members[j].size(), [&](std::size_t k) {
       const std::size_t i = members[j][k];
-      weights[i] = project_texel(observations.of(i), observations.channels, basis, error, prior);
+      weights[i] = project_texel(observations.of(i), observations.channels, basis, material.brdf, material.error, prior);
     });
     summary.texels_by_material.push_back(static_cast<std::size_t>(std::count_if(
         members[j].begin(), members[j].end(), [&](std::size_t i) { return !observations.of(i).empty(); })));
@@ -98,20 +98,32 @@ std::vector<TexelWeights> project_all(const Observations& observations, const Cl
   return weights;
 }
 
-// Each material's basis moved by principal function analysis, if samples that were left out are then predicted better.
+// Each material's basis moved by principal function analysis, if lumitexels that it was not learnt from are then predicted better. The
+// paper moves it always.
 void move_bases(const Observations& observations, const Clustering& clustering, const FitOptions& options, const FitSummary& summary,
                 Model& model, Progress& progress) {
+  constexpr double kLeastGain = 0.005;  // of the left-out error: less is not worth other functions
   const std::vector<LumitexelList> members = members_of(clustering);
   progress.begin("basis functions", static_cast<std::int64_t>(members.size()), "materials");
   for (std::size_t j = 0; j < members.size(); ++j) {
     const MaterialModel& material = clustering.materials[j].model;
+    std::vector<Brdf>& basis = model.materials[j].basis;
     PrincipalOptions principal;
     principal.most_lumitexels = options.final_lumitexels;
     principal.prior = summary.prior[j].prior;
-    principal.fit = cluster_options(options, material.error).fit;
-    const auto moved = principal_functions(observations, members[j], model.materials[j].basis, material.error, principal);
-    const PriorChoice choice = prior_for(observations, members[j], moved.basis, material.error, options);
-    if (options.plain_projection || choice.left_out_error < summary.prior[j].left_out_error) model.materials[j].basis = moved.basis;
+    principal.fit = clustering.fit;
+    const auto moved = [&](const LumitexelList& learnt) {
+      return principal_functions(observations, learnt, basis, material.error, principal).basis;
+    };
+    bool better = options.method == FitMethod::Paper;
+    if (!better) {
+      LumitexelList learnt, left_out;
+      for (std::size_t k = 0; k < members[j].size(); ++k) (k % 2 == 0 ? learnt : left_out).push_back(members[j][k]);
+      const double before = prior_for(observations, left_out, basis, material, options).left_out_error;
+      const double after = prior_for(observations, left_out, moved(learnt), material, options).left_out_error;
+      better = after < (1.0 - kLeastGain) * before;
+    }
+    if (better) basis = moved(members[j]);
     progress.update(static_cast<std::int64_t>(j + 1));
   }
 }
@@ -147,6 +159,7 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
   summary.lumitexels = observations.lumitexels();
   summary.samples = observations.samples.size();
   summary.rejected = gathered.rejected;
+  summary.unusable = observations.rejected;
   for (std::size_t i = 0; i < observations.lumitexels(); ++i) summary.starved += observations.of(i).empty();
 
   timer.begin("materials");

@@ -16,6 +16,7 @@ namespace lumitexel {
 struct FitSummary {
   std::size_t lumitexels = 0, samples = 0, unseen_triangles = 0, starved = 0;  // starved: lumitexels without samples
   RejectionCounts rejected;
+  RejectedSamples unusable;          // gathered, but not finite or below the surface
   ErrorModel error;                  // that the fit started from, or was given
   bool estimated_errors = false;     // whether materials' own error models took its place
   std::vector<std::size_t> texels_by_material;

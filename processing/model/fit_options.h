@@ -19,7 +19,7 @@ struct FitOptions {
   int materials = 4;                        // 0: as many as the samples ask for
   BrdfFamily family = BrdfFamily::Lafortune;
   int most_lobes = 1;                       // each must be asked for by the samples; with the paper's method it is the number
-  bool principal_functions = true;          // tried for each material, and kept where left-out samples are predicted better
+  bool principal_functions = false;         // tried for each material, and kept where left-out lumitexels are predicted better
   ErrorSource errors = ErrorSource::Auto;
   double intensity_weight = 0.3;            // s of the paper's eq. 6; only the paper's method looks at it
   std::size_t learning_lumitexels = 10000;  // that the materials are learnt on

@@ -47,6 +47,7 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
                        {"family", to_string(options.family)},
                        {"most_lobes", options.most_lobes},
                        {"principal_functions", options.principal_functions},
+                       {"intensity_weight", options.method == FitMethod::Paper ? json(options.intensity_weight) : json(nullptr)},
                        {"materials", options.materials},
                        {"learning_lumitexels", options.learning_lumitexels},
                        {"final_lumitexels", options.final_lumitexels},
@@ -61,6 +62,8 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
   object["starved_lumitexels"] = summary.starved;
   object["unseen_triangles"] = summary.unseen_triangles;
   object["rejected"] = rejected_json(summary.rejected);
+  object["rejected"]["not_finite"] = summary.unusable.not_finite;
+  object["rejected"]["below_surface"] = summary.unusable.below_surface;
   object["stages"] = stages_json(summary.stages);
   object["rms"] = {{"single", summary.single.rms}, {"cluster", summary.cluster.rms}, {"projection", summary.projection.rms}};
   object["rms_by_channel"] = {{"single", summary.single.by_channel},

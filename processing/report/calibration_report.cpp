@@ -50,14 +50,16 @@ std::string lens_section(const CalibrationSummary& summary, const std::filesyste
                                  "principal point y, px", "k1", "k2", "p1", "p2"};
   Rows rows;
   for (std::size_t i = 0; i < lens.params.size(); ++i) {
-    rows.push_back({kNames[i], html::number(lens.params[i], 7), lens.sigma.empty() ? "–" : html::number(lens.sigma[i], 2)});
+    rows.push_back({kNames[i], html::number(lens.params[i], 7), i < lens.sigma.size() ? html::number(lens.sigma[i], 2) : "–"});
   }
+  const bool boards = lens.boards > 0 || lens.corner_transmission;
   Rows fit{{"boards used", std::to_string(lens.boards)},
            {"re-projection, px rms", measured(lens.reprojection_px)},
+           {"sigma of a corner's place, px", measured(lens.corner_sigma_px, 1.0, 2)},
            {"transmission in the corner", measured(lens.corner_transmission, 1.0, 4)},
            {"its sigma", measured(lens.corner_transmission_sigma, 1.0, 2)}};
   return html::section("Lens", "From: " + lens.source + ".",
-                       html::table({"", "value", "sigma"}, rows) + html::table({"", ""}, fit) + notes_list(lens.notes) +
+                       html::table({"", "value", "sigma"}, rows) + (boards ? html::table({"", ""}, fit) : "") + notes_list(lens.notes) +
                            pictures_markup(summary, folder, {"lens_coverage.png", "vignetting.png"}));
 }
 
@@ -104,18 +106,46 @@ std::string views_section(const CalibrationSummary& summary) {
           "</div>");
 }
 
-std::string scale_section(const CalibrationSummary& summary) {
-  Rows rows;
-  for (std::size_t c = 0; c < summary.intensity.size(); ++c) {
-    rows.push_back({"channel " + std::to_string(c), html::number(summary.intensity[c], 6),
-                    html::number(100.0 * summary.scale_sigma, 2) + " %"});
-  }
+std::string share_bars(const CalibrationSummary& summary) {
   std::string bars;
   for (const UncertaintyShare& share : summary.shares) {
     const std::string percent = html::number(100.0 * share.share, 3);
     bars += "<span>" + html::escaped(share.quantity + ": " + share.source) +
             "</span><span class=\"track\"><div class=\"fill\" style=\"width:" + percent +
             "%\"></div></span><span class=\"value\">" + percent + " %</span>";
+  }
+  return bars.empty() ? "" : "<h3>What its variance comes from</h3><div class=\"bars\">" + bars + "</div>";
+}
+
+// Imported: poses given elsewhere, held against the masks.
+std::string given_section(const CalibrationSummary& summary) {
+  Rows rows;
+  for (const PoseSummary& pose : summary.poses) {
+    rows.push_back({pose.view, pose.source, measured(pose.given_px), measured(pose.silhouette_px), measured(pose.contradiction, 1.0, 4),
+                    measured(pose.sigma_m, 1e3), measured(pose.sigma_deg), pose.dominant, html::escaped(pose.problem)});
+  }
+  std::string text =
+      "Poses were given with the session. One is replaced only if its silhouette contradicts it: by a chi-square with six degrees of "
+      "freedom, at 5 % for all views together. Silhouette: median distance between the mesh's outline and the mask's rim. One sigma "
+      "each. Lights and scale are as given; nothing in the session measures them.";
+  if (!summary.pose_problem.empty()) text += " Nothing was compared: " + summary.pose_problem + ".";
+  if (summary.rim_offset_px) {
+    text += " The masks' rims lie " + measured(summary.rim_offset_px) + " ± " + measured(summary.rim_offset_sigma_px, 1.0, 2) +
+            " px outside of the mesh's outline.";
+  }
+  return html::section("Poses", text,
+                       "<div class=\"scroll\">" +
+                           html::table({"view", "pose", "silhouette as given, px", "silhouette, px", "chi-square of the given", "sigma, mm",
+                                        "sigma, °", "mostly from", ""},
+                                       rows) +
+                           "</div>" + share_bars(summary));
+}
+
+std::string scale_section(const CalibrationSummary& summary) {
+  Rows rows;
+  for (std::size_t c = 0; c < summary.intensity.size(); ++c) {
+    rows.push_back({"channel " + std::to_string(c), html::number(summary.intensity[c], 6),
+                    html::number(100.0 * summary.scale_sigma, 2) + " %"});
   }
   const LampSummary& lamp = summary.lamp;
   std::ostringstream text;
@@ -125,8 +155,7 @@ std::string scale_section(const CalibrationSummary& summary) {
        << (lamp.at_10_deg ? "10 degrees off its axis it gives " + html::number(*lamp.at_10_deg, 4) + " of its intensity."
                           : "no angular pattern was needed or measured.");
   return html::section("Scale and lamp", text.str(),
-                       html::table({"", "intensity", "sigma"}, rows) + "<h3>What its variance comes from</h3><div class=\"bars\">" +
-                           bars + "</div>");
+                       html::table({"", "intensity", "sigma"}, rows) + share_bars(summary));
 }
 
 }  // namespace
@@ -136,7 +165,7 @@ std::string calibration_report(const CalibratedSession& session, const Calibrati
                                const std::string& data_json) {
   std::string body = "<header><h1>Calibration</h1><p>" + std::to_string(session.views.size()) +
                      " views. Every sigma is one standard deviation; a dash means: not measured.</p></header>";
-  if (!session.views.empty()) body += views_section(summary);
+  if (!session.views.empty()) body += summary.intensity.empty() ? given_section(summary) : views_section(summary);
   if (!summary.intensity.empty()) body += scale_section(summary);
   if (!summary.lens.params.empty()) body += lens_section(summary, pictures);
   if (summary.sensor.electrons_per_dn > 0) body += sensor_section(summary.sensor, summary.hot_pixels);

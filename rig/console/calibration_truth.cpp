@@ -144,7 +144,9 @@ TruthComparison compare(const json& truth, const CalibratedSession& session, con
   json lens = nullptr;
   if (!session.views.empty()) {
     lens = lens_error_px(truth, session.views[0].camera);
-    text << "  lens: at most " << lens.get<double>() << " px\n";
+    text << "  lens: at most " << lens.get<double>() << " px";
+    if (summary.lens.corner_sigma_px) text << " (stated sigma in the corners " << *summary.lens.corner_sigma_px << ')';
+    text << '\n';
   }
   const json figures = {{"light_error_mm", figures_json(lights)},
                         {"light_error_spheres_alone_mm", figures_json(alone)},

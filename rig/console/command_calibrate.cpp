@@ -58,7 +58,10 @@ json poses_json(const CalibratedSession& session, const CalibrationSummary& summ
                      {"silhouette_px", measured_or_null(pose.silhouette_px)},
                      {"source", pose.source},
                      {"tags", pose.tags},
-                     {"dominant", pose.dominant}});
+                     {"dominant", pose.dominant},
+                     {"given_silhouette_px", measured_or_null(pose.given_px)},
+                     {"chi_square_of_given", measured_or_null(pose.contradiction)},
+                     {"problem", pose.problem}});
   }
   return poses;
 }
@@ -73,6 +76,7 @@ json camera_json(const CalibratedSession& session, const LensSummary& lens) {
   return {{"model", "OPENCV"},
           {"params", params},
           {"params_sigma", lens.sigma.empty() ? json(nullptr) : json(lens.sigma)},
+          {"corner_sigma_px", measured_or_null(lens.corner_sigma_px)},
           {"reprojection_px", measured_or_null(lens.reprojection_px)}};
 }
 
@@ -85,9 +89,10 @@ json result_json(const CalibratedSession& session, const CalibrationSummary& sum
                   {{"value", captured ? json(summary.intensity) : json(nullptr)},
                    {"sigma", known_or_null(session.gray_card_scale_sigma)}}}};
   const json all = summary_json(summary);
-  for (const char* key : {"sensor", "lens", "lamp", "pose_problem", "shares", "sphere_residual_px", "arm_residual_m",
-                          "arm_scatter_m", "hot_pixels", "views_without_silhouette"}) {
-    result[key] = captured || !summary.lens.params.empty() ? all.at(key) : json(nullptr);
+  for (const char* key : {"lens", "pose_problem", "shares", "rim_offset_px", "rim_offset_sigma_px"}) result[key] = all.at(key);
+  for (const char* key : {"sensor", "lamp", "joint", "sphere_residual_px", "arm_residual_m", "arm_scatter_m", "hot_pixels",
+                          "views_without_silhouette"}) {
+    result[key] = captured || session.views.empty() ? all.at(key) : json(nullptr);
   }
   return result;
 }
@@ -112,19 +117,56 @@ void describe_poses(const CalibrationSummary& summary, std::ostream& text) {
        << " mm, " << median(sigmas_deg) << " degrees\n";
 }
 
+// An imported session: what it was given, held against its masks.
+void describe_given(const CalibrationSummary& summary, std::ostream& text) {
+  int replaced = 0, confirmed = 0;
+  std::vector<double> before, after, sigmas_m, sigmas_deg;
+  for (const PoseSummary& pose : summary.poses) {
+    replaced += pose.source == "silhouette";
+    if (!pose.silhouette_px) continue;
+    confirmed += pose.source != "silhouette" && pose.problem.empty();
+    before.push_back(*pose.given_px);
+    after.push_back(*pose.silhouette_px);
+    sigmas_m.push_back(*pose.sigma_m);
+    sigmas_deg.push_back(*pose.sigma_deg);
+  }
+  if (!summary.pose_problem.empty()) text << "poses: as given; " << summary.pose_problem << '\n';
+  if (!before.empty()) {
+    text << "poses: " << replaced << " of " << summary.poses.size() << " replaced because their silhouettes contradict them, " << confirmed
+         << " confirmed; silhouettes within " << median(after) << " px (median; as given " << median(before) << "), sigma "
+         << 1e3 * median(sigmas_m) << " mm, " << median(sigmas_deg) << " degrees (median)\n";
+  }
+  for (const PoseSummary& pose : summary.poses) {
+    if (!pose.problem.empty()) text << "  " << pose.view << " keeps its pose: " << pose.problem << '\n';
+  }
+  if (summary.rim_offset_px) {
+    text << "masks: their rims lie " << *summary.rim_offset_px << " ± " << *summary.rim_offset_sigma_px
+         << " px outside of the mesh's outline\n";
+  }
+  text << "lights and scale: as given, nothing here measures them\n";
+}
+
 void describe(const CalibratedSession& session, const CalibrationSummary& summary, std::ostream& text) {
   text << session.views.size() << " views calibrated, " << session.channels << " channels\n";
   const LensSummary& lens = summary.lens;
   if (lens.reprojection_px) {
     text << "lens: " << lens.source << ", " << lens.boards << " boards, re-projection " << *lens.reprojection_px << " px rms";
+    if (lens.corner_sigma_px) text << ", sigma in the corners " << *lens.corner_sigma_px << " px";
     if (lens.corner_transmission) text << ", transmission in the corner " << *lens.corner_transmission;
     text << '\n';
   }
   for (const std::string& note : lens.notes) text << "  " << note << '\n';
-  if (summary.intensity.empty()) return;  // imported: nothing was measured here
+  if (summary.intensity.empty()) {
+    if (!session.views.empty()) describe_given(summary, text);
+    return;
+  }
   const auto measured = std::count_if(summary.lights.begin(), summary.lights.end(),
                                       [](const LightSummary& light) { return light.from_spheres; });
   describe_poses(summary, text);
+  if (summary.joint.tried) {
+    text << "joint refinement: highlights move lens and poses by chi square " << summary.joint.chi2_gain
+         << (summary.joint.taken ? ", taken\n" : ", not significant, not taken\n");
+  }
   text << "light: " << measured << " of " << summary.lights.size() << " measured by the spheres, highlights fit to "
        << summary.sphere_residual_px << " px rms, arm within " << 1e3 * summary.arm_residual_m << " mm rms\n"
        << "scale: gray card to " << 100.0 * summary.scale_sigma << " %, intensity";

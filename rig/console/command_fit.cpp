@@ -17,7 +17,7 @@ struct FitSettings {
   std::string session, out, quality = "standard", materials = "4", method = "lumitexel", family = "lafortune", errors = "auto";
   int lobes = 1;
   double intensity_weight = 0.3;
-  bool separate_lobes = false, plain_projection = false, no_principal_functions = false;
+  bool separate_lobes = false, plain_projection = false, principal_functions = false;
 };
 
 constexpr std::pair<const char*, FitMethod> kMethods[] = {{"lumitexel", FitMethod::Lumitexel}, {"paper", FitMethod::Paper}};
@@ -52,13 +52,15 @@ FitOptions fit_options(const FitSettings& settings) {
   options.errors = named("--errors", settings.errors, kErrors);
   options.most_lobes = settings.lobes;
   options.intensity_weight = settings.intensity_weight;
-  options.principal_functions = !settings.no_principal_functions;
+  options.principal_functions = settings.principal_functions;
   options.shared_lobe_shape = !settings.separate_lobes;
   options.plain_projection = settings.plain_projection;
   if (options.method == FitMethod::Paper) {
     if (options.materials == 0) throw BadInput("--materials", "auto with --method paper", "a number: the paper does not choose it");
+    if (options.family != BrdfFamily::Lafortune) throw BadInput("--family", settings.family + " with --method paper", "lafortune");
+    if (options.errors != ErrorSource::Auto) throw BadInput("--errors", settings.errors + " with --method paper", "no such option");
     options.shared_lobe_shape = false;
-    options.plain_projection = true;
+    options.plain_projection = options.principal_functions = true;
   }
   return options;
 }
@@ -119,7 +121,7 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
                       "draft: materials learnt on 2,000 surface points and fitted to 2,000 each; standard: 10,000 and 5,000; "
                       "reference: all")
       ->capture_default_str();
-  command->add_option("--materials", settings->materials, "How many materials to look for, 1 to 64, or auto: as many as the samples ask for")->capture_default_str();
+  command->add_option("--materials", settings->materials, "How many materials to look for, 1 to 64, or auto: as many as the samples ask for, at most 12")->capture_default_str();
   command->add_option("--method", settings->method,
                       "lumitexel, or paper: clustering, fits and projection as published (Lensch et al. 2003), for comparison")
       ->capture_default_str();
@@ -131,8 +133,9 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
                       "What a fit takes for noise. estimated: what each material's residuals say; given: 30 % of each prediction "
                       "and of the median; auto: estimated, unless that predicts left-out samples worse")
       ->capture_default_str();
-  command->add_flag("--no-principal-functions", settings->no_principal_functions,
-                    "Leave the basis BRDFs as clustering made them, even where moving them predicts left-out samples better");
+  command->add_flag("--principal-functions", settings->principal_functions,
+                    "Also move the basis BRDFs of each material (principal function analysis), where left-out surface points are "
+                    "then predicted better; always with --method paper");
   command->add_option("--intensity-weight", settings->intensity_weight,
                       "Of the paper's method: what intensity counts beside colour when materials are told apart")
       ->check(CLI::Range(1e-3, 1.0))

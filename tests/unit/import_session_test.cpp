@@ -27,7 +27,7 @@ ImportSummary import_small(const SmallImport& layout) { return import_small(layo
 
 CalibratedSession calibrate_small(const SmallImport& layout) {
   NoProgress progress;
-  return calibrate_imported(SessionStore::open(layout.session(), OpenMode::ReadOnly), progress);
+  return calibrate_imported(SessionStore::open(layout.session(), OpenMode::ReadOnly), progress).first;
 }
 
 TEST(ImportSession, KeepsTheSourcesUnchanged) {
@@ -336,7 +336,7 @@ TEST(ImportSession, ReadsPhotographsOfAnUnrelatedRenderer) {
       folder / "s", progress);
   EXPECT_EQ(summary.views, 3);
   EXPECT_EQ(summary.heldout, 1);
-  const CalibratedSession session = calibrate_imported(SessionStore::open(folder / "s", OpenMode::ReadOnly), progress);
+  const CalibratedSession session = calibrate_imported(SessionStore::open(folder / "s", OpenMode::ReadOnly), progress).first;
   // Poses, cameras and masks agree: nearly all vertices of the mesh fall on the object. The
   // masks' outline and the coarse mesh's may differ by a pixel or two of some hundred.
   for (const View& view : session.views) {

@@ -9,6 +9,7 @@
 
 #include "drivers/error.h"
 #include "processing/calibration/lens/chi_square.h"
+#include "processing/calibration/lens/lens_combination.h"
 #include "processing/calibration/lens/lens_information.h"
 #include "processing/calibration/lens/lens_start.h"
 
@@ -81,12 +82,10 @@ void replace_poorly_placed(const CameraModel& camera, Boards& boards) {
   }
 }
 
-bool fit_all_terms(CameraModel& camera, Boards& boards) {
-  refine_boards(camera, kFocalOnly, boards.placed);
-  refine_boards(camera, kRadial, boards.placed);
-  refine_boards(camera, kAll, boards.placed);
+bool fit_all_terms(CameraModel& camera, Boards& boards, const std::optional<LensPull>& pull) {
+  for (const LensMask& free : {kFocalOnly, kRadial, kAll}) refine_boards(camera, free, boards.placed, pull);
   replace_poorly_placed(camera, boards);
-  return refine_boards(camera, kAll, boards.placed);
+  return refine_boards(camera, kAll, boards.placed, pull);
 }
 
 double median(std::vector<double> values) {
@@ -118,7 +117,7 @@ double typical_chi2(const CameraModel& camera, const Boards& boards) {
 }
 
 // Takes out the worst board that does not fit, fits again, until all fit. The worst alone, because it spoils others.
-bool reject_misfits(CameraModel& camera, Boards& boards, LensCalibration& result) {
+bool reject_misfits(CameraModel& camera, Boards& boards, const std::optional<LensPull>& pull, LensCalibration& result) {
   constexpr std::size_t kFewestToJudge = 3;
   bool converged = true;
   while (boards.placed.size() > kFewestToJudge) {
@@ -134,7 +133,7 @@ bool reject_misfits(CameraModel& camera, Boards& boards, LensCalibration& result
     result.boards[boards.place[worst]].rejected = verdict.reason;
     boards.placed.erase(boards.placed.begin() + static_cast<std::ptrdiff_t>(worst));
     boards.place.erase(boards.place.begin() + static_cast<std::ptrdiff_t>(worst));
-    converged = fit_all_terms(camera, boards);
+    converged = fit_all_terms(camera, boards, pull);
   }
   return converged;
 }
@@ -165,6 +164,12 @@ std::string undetermined(const LensCalibration& result, const std::optional<Lens
     text += "; the boards are parallel within " + number(tilt_spread_deg(boards)) +
             " degrees: tilt them by 20 to 45 degrees, each another way";
   return text;
+}
+
+std::vector<BoardSighting> usable(const Boards& boards) {
+  std::vector<BoardSighting> sightings;
+  for (const PlacedBoard& board : boards.placed) sightings.push_back(board.sighting);
+  return sightings;
 }
 
 void describe(LensCalibration& result, const Boards& boards, int width_px, int height_px) {
@@ -201,29 +206,21 @@ void place_rejected(LensCalibration& result, const std::vector<BoardSighting>& s
   }
 }
 
-}  // namespace
-
-LensCalibration calibrate_lens(int width_px, int height_px, const std::vector<BoardSighting>& sightings) {
-  check(width_px, height_px, sightings);
-  LensCalibration result;
-  std::vector<BoardSighting> usable;
+// The usable boards, placed by a first camera. The others are listed.
+Boards usable_boards(const std::vector<BoardSighting>& sightings, LensCalibration& result) {
   Boards boards;
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     result.boards.push_back({.name = sightings[i].name, .rejected = unusable(sightings[i])});
     if (!result.boards[i].rejected.empty()) continue;
-    usable.push_back(sightings[i]);
+    boards.placed.push_back({sightings[i]});
     boards.place.push_back(i);
   }
-  constexpr std::size_t kFewestBoards = 2;
-  if (usable.size() < kFewestBoards) {
-    result.refusal = std::to_string(usable.size()) + " of " + std::to_string(sightings.size()) +
-                     " photographs show a usable board: photograph at least 3, better 10, tilted by 20 to 45 degrees";
-    return result;
-  }
-  result.camera = starting_camera(width_px, height_px, usable);
-  for (const BoardSighting& sighting : usable) boards.placed.push_back(place_board(result.camera, sighting));
-  bool converged = fit_all_terms(result.camera, boards);
-  converged = reject_misfits(result.camera, boards, result) && converged;
+  return boards;
+}
+
+// Without anything known beforehand: only the distortion terms that the boards ask for.
+bool solve_alone(Boards& boards, LensCalibration& result) {
+  bool converged = true;
   result.terms = chosen_terms(lens_vector(result.camera), lens_information(result.camera, boards.placed));
   LensVector lens = lens_vector(result.camera);
   for (std::size_t i = 0; i < result.terms.size(); ++i) {
@@ -232,10 +229,43 @@ LensCalibration calibrate_lens(int width_px, int height_px, const std::vector<Bo
   result.camera = with_lens_vector(result.camera, lens);
   if (result.terms != kAll) converged = refine_boards(result.camera, result.terms, boards.placed);
   const auto covariance = lens_covariance(lens_information(result.camera, boards.placed), result.terms);
-  describe(result, boards, width_px, height_px);
-  place_rejected(result, sightings);
   result.refusal = undetermined(result, covariance, boards);
   if (covariance) result.covariance = *covariance;
+  return converged;
+}
+
+bool solve_with_prior(const LensPrior& prior, Boards& boards, LensCalibration& result) {
+  const CombinedLens combined = combine_with_prior(result.camera, boards.placed, prior);
+  result.terms = kAll;
+  result.covariance = combined.covariance;
+  if (combined.widened > 1.0) {
+    result.warnings.push_back("the boards contradict the rig's description of the lens: its sigmas were taken " +
+                              number(combined.widened) + " times as wide");
+  }
+  return combined.converged;
+}
+
+}  // namespace
+
+LensCalibration calibrate_lens(int width_px, int height_px, const std::vector<BoardSighting>& sightings,
+                               const std::optional<LensPrior>& prior) {
+  check(width_px, height_px, sightings);
+  LensCalibration result;
+  Boards boards = usable_boards(sightings, result);
+  constexpr std::size_t kFewestBoards = 2;
+  if (boards.placed.size() < kFewestBoards) {
+    result.refusal = std::to_string(boards.placed.size()) + " of " + std::to_string(sightings.size()) +
+                     " photographs show a usable board: photograph at least 3, better 10, tilted by 20 to 45 degrees";
+    return result;
+  }
+  result.camera = prior ? prior->camera : starting_camera(width_px, height_px, usable(boards));
+  for (PlacedBoard& board : boards.placed) board = place_board(result.camera, board.sighting);
+  const std::optional<LensPull> pull = prior ? std::optional(pull_of(*prior)) : std::nullopt;
+  bool converged = fit_all_terms(result.camera, boards, pull);
+  converged = reject_misfits(result.camera, boards, pull, result) && converged;
+  converged = (prior ? solve_with_prior(*prior, boards, result) : solve_alone(boards, result)) && converged;
+  describe(result, boards, width_px, height_px);
+  place_rejected(result, sightings);
   if (!converged && result.refusal.empty()) result.refusal = "the least squares did not converge in 100 steps";
   return result;
 }

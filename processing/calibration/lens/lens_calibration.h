@@ -5,10 +5,12 @@
 // are rejected and listed; distortion terms stay only if the data ask for them (lens_information.h).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "processing/calibration/lens/lens_coverage.h"
+#include "processing/calibration/lens/lens_prior.h"
 #include "processing/calibration/lens/reprojection.h"
 
 namespace lumitexel {
@@ -40,6 +42,10 @@ struct LensCalibration {
 // known to no better than 2 %, which is what boards all parallel to the picture give. From 3 boards on everything else
 // is a matter of the stated sigmas. Throws BadInput on a picture without size or a landmark whose covariance is not
 // positive or whose values are not finite.
-LensCalibration calibrate_lens(int width_px, int height_px, const std::vector<BoardSighting>& sightings);
+//
+// With a prior, boards and prior are one least squares (lens_combination.h), from the prior's camera on: all terms take part, those
+// that the boards do not determine stay where the prior has them, and the covariance is that of both.
+LensCalibration calibrate_lens(int width_px, int height_px, const std::vector<BoardSighting>& sightings,
+                               const std::optional<LensPrior>& prior = {});
 
 }  // namespace lumitexel

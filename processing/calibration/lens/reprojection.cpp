@@ -3,6 +3,7 @@
 #include <ceres/autodiff_cost_function.h>
 #include <ceres/loss_function.h>
 #include <ceres/manifold.h>
+#include <ceres/normal_prior.h>
 #include <ceres/problem.h>
 #include <ceres/rotation.h>
 #include <ceres/solver.h>
@@ -78,20 +79,8 @@ double worst_expected(const Landmark& landmark) {
 
 }  // namespace
 
-LensVector lens_vector(const CameraModel& c) {
-  LensVector lens;
-  lens << c.focal_x_px, c.focal_y_px, c.principal_x_px, c.principal_y_px, c.k1, c.k2, c.p1, c.p2;
-  return lens;
-}
-
-CameraModel with_lens_vector(CameraModel camera, const LensVector& lens) {
-  camera.focal_x_px = lens[0], camera.focal_y_px = lens[1];
-  camera.principal_x_px = lens[2], camera.principal_y_px = lens[3];
-  camera.k1 = lens[4], camera.k2 = lens[5], camera.p1 = lens[6], camera.p2 = lens[7];
-  return camera;
-}
-
-bool refine_boards(CameraModel& camera, const LensMask& free, std::vector<PlacedBoard>& boards) {
+bool refine_boards(CameraModel& camera, const LensMask& free, std::vector<PlacedBoard>& boards,
+                   const std::optional<LensPull>& pull) {
   LensVector lens = lens_vector(camera);
   std::vector<PoseVector> poses;
   for (const PlacedBoard& board : boards) poses.push_back(pose_vector(board.camera_from_board));
@@ -102,6 +91,11 @@ bool refine_boards(CameraModel& camera, const LensMask& free, std::vector<Placed
       problem.AddResidualBlock(cost_of(landmark).release(), new ceres::HuberLoss(worst_expected(landmark)), lens.data(),
                                poses[b].data());
     }
+  }
+  if (pull) {
+    // U^T U is the information.
+    const Eigen::MatrixXd root = pull->information.llt().matrixU();
+    problem.AddResidualBlock(new ceres::NormalPrior(root, pull->mean), nullptr, lens.data());
   }
   std::vector<int> fixed;
   for (int i = 0; i < kLensParameters; ++i) {

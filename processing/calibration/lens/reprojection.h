@@ -6,29 +6,32 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "processing/calibration/lens/camera_model.h"
 #include "processing/calibration/lens/landmark.h"
+#include "processing/calibration/lens/lens_vector.h"
 
 namespace lumitexel {
 
-inline constexpr int kLensParameters = 8;
-using LensVector = Eigen::Matrix<double, kLensParameters, 1>;  // focal x, y, principal x, y, k1, k2, p1, p2
-using LensMatrix = Eigen::Matrix<double, kLensParameters, kLensParameters>;
 using LensMask = std::array<bool, kLensParameters>;
-
-LensVector lens_vector(const CameraModel& camera);
-CameraModel with_lens_vector(CameraModel camera, const LensVector& lens);
 
 struct PlacedBoard {
   BoardSighting sighting;
   Eigen::Isometry3d camera_from_board = Eigen::Isometry3d::Identity();
 };
 
+// What is held against the lens besides the boards: (lens - mean)^T information (lens - mean) is added to their chi square.
+struct LensPull {
+  LensVector mean = LensVector::Zero();
+  LensMatrix information = LensMatrix::Zero();
+};
+
 // Least squares over the camera's free parameters and all placements, which are changed in place. Landmarks beyond
 // the 99.9 % bound of chi square weigh less (Huber). Returns whether it converged.
-bool refine_boards(CameraModel& camera, const LensMask& free, std::vector<PlacedBoard>& boards);
+bool refine_boards(CameraModel& camera, const LensMask& free, std::vector<PlacedBoard>& boards,
+                   const std::optional<LensPull>& pull = {});
 
 // The whitened residuals and their slope with respect to the lens, both freed of what the board's pose can explain (the
 // 6 directions of the pose are projected out): so many rows as residuals less 6.

@@ -1,16 +1,14 @@
 #include "processing/calibration/light/light_position.h"
 
 #include <ceres/ceres.h>
+#include <ceres/normal_prior.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <set>
 
 #include "drivers/error.h"
@@ -40,27 +38,47 @@ struct LineChart {
   }
 };
 
+// The lens in units of its prior's standard deviations along the prior's axes: eight numbers that are zero, plus or minus one,
+// before the highlights say anything, and of which those of terms that the lens does not use change nothing.
+struct LensChart {
+  CameraModel start;
+  LensMatrix root = LensMatrix::Zero();  // root root^T is the prior's covariance
+
+  LensChart(const CameraModel& camera, const std::optional<LensMatrix>& covariance) : start(camera) {
+    if (!covariance) return;
+    const LensVector scale = covariance->diagonal().cwiseSqrt();
+    const LensVector inverse = scale.unaryExpr([](double x) { return x > 0.0 ? 1.0 / x : 0.0; });
+    const Eigen::SelfAdjointEigenSolver<LensMatrix> eigen(LensMatrix(inverse.asDiagonal() * *covariance * inverse.asDiagonal()));
+    const LensVector lengths = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+    root = scale.asDiagonal() * eigen.eigenvectors() * lengths.asDiagonal();
+  }
+  CameraModel at(const double* p) const {
+    return with_lens_vector(start, lens_vector(start) + root * Eigen::Map<const LensVector>(p));
+  }
+};
+
 struct RingResidual {
-  const CameraModel* camera;
+  const LensChart* lens_chart;
   const LineChart* chart;
   double ring_radius_m;
   HighlightPixel seen;
 
-  bool operator()(const double* line, double* residual) const {
-    const Eigen::Vector2d expected = ring_highlight_pixel(*camera, chart->at(line).sphere(seen.sphere), ring_radius_m);
+  bool operator()(const double* line, const double* lens, double* residual) const {
+    const Eigen::Vector2d expected =
+        ring_highlight_pixel(lens_chart->at(lens), chart->at(line).sphere(seen.sphere), ring_radius_m);
     Eigen::Map<Eigen::Vector2d>(residual, 2) = (expected - seen.pixel) / seen.sigma_px;
     return std::isfinite(residual[0]) && std::isfinite(residual[1]);
   }
 };
 
 struct PointResidual {
-  const CameraModel* camera;
+  const LensChart* lens_chart;
   const LineChart* chart;
   HighlightPixel seen;
   EmitterDisc emitter;
 
-  bool operator()(const double* line, const double* light, double* residual) const {
-    const Eigen::Vector2d expected = disc_highlight_pixel(*camera, chart->at(line).sphere(seen.sphere),
+  bool operator()(const double* line, const double* light, const double* lens, double* residual) const {
+    const Eigen::Vector2d expected = disc_highlight_pixel(lens_chart->at(lens), chart->at(line).sphere(seen.sphere),
                                                           Eigen::Vector3d(light[0], light[1], light[2]), emitter);
     Eigen::Map<Eigen::Vector2d>(residual, 2) = (expected - seen.pixel) / seen.sigma_px;
     return std::isfinite(residual[0]) && std::isfinite(residual[1]);
@@ -76,12 +94,22 @@ struct Block {
 // The problem and what its parameters point to; stays where it is built.
 struct Adjustment {
   LineChart chart;
+  LensChart lens_chart;
   LineParameters line{};
+  std::array<double, kLensParameters> lens{};
   std::vector<std::array<double, 3>> lights;
   std::vector<Block> blocks;
   ceres::Problem problem;
 
-  explicit Adjustment(const SphereLine& start) : chart(start) {}
+  Adjustment(const SphereLine& start, const CameraModel& camera, const std::optional<LensMatrix>& lens_covariance)
+      : chart(start), lens_chart(camera, lens_covariance) {
+    problem.AddParameterBlock(lens.data(), kLensParameters);
+    if (lens_covariance) {
+      const ceres::Matrix unit = ceres::Matrix::Identity(kLensParameters, kLensParameters);
+      problem.AddResidualBlock(new ceres::NormalPrior(unit, ceres::Vector::Zero(kLensParameters)), nullptr, lens.data());
+    }
+    problem.SetParameterBlockConstant(lens.data());
+  }
 };
 
 template <typename Residual, int... Sizes>
@@ -90,21 +118,20 @@ ceres::CostFunction* numeric_cost(Residual residual) {
   return new ceres::NumericDiffCostFunction<Residual, ceres::CENTRAL, 2, Sizes...>(new Residual(std::move(residual)));
 }
 
-void add_rings(Adjustment& a, const CameraModel& camera, double radius_m, const std::vector<HighlightPixel>& rings) {
+void add_rings(Adjustment& a, double radius_m, const std::vector<HighlightPixel>& rings) {
   for (const HighlightPixel& seen : rings) {
-    auto* cost = numeric_cost<RingResidual, 5>(RingResidual{&camera, &a.chart, radius_m, seen});
-    a.blocks.push_back(
-        {a.problem.AddResidualBlock(cost, new ceres::CauchyLoss(3.0), a.line.data()), -1, seen.sigma_px});
+    auto* cost = numeric_cost<RingResidual, 5, 8>(RingResidual{&a.lens_chart, &a.chart, radius_m, seen});
+    const auto id = a.problem.AddResidualBlock(cost, new ceres::CauchyLoss(3.0), a.line.data(), a.lens.data());
+    a.blocks.push_back({id, -1, seen.sigma_px});
   }
 }
 
-void add_points(Adjustment& a, const CameraModel& camera, int view, const std::vector<HighlightPixel>& points,
-                const EmitterDisc& emitter) {
+void add_points(Adjustment& a, int view, const std::vector<HighlightPixel>& points, const EmitterDisc& emitter) {
   for (const HighlightPixel& seen : points) {
-    auto* cost = numeric_cost<PointResidual, 5, 3>(PointResidual{&camera, &a.chart, seen, emitter});
+    auto* cost = numeric_cost<PointResidual, 5, 3, 8>(PointResidual{&a.lens_chart, &a.chart, seen, emitter});
     double* light = a.lights[static_cast<std::size_t>(view)].data();
-    a.blocks.push_back(
-        {a.problem.AddResidualBlock(cost, new ceres::CauchyLoss(3.0), a.line.data(), light), view, seen.sigma_px});
+    const auto id = a.problem.AddResidualBlock(cost, new ceres::CauchyLoss(3.0), a.line.data(), light, a.lens.data());
+    a.blocks.push_back({id, view, seen.sigma_px});
   }
 }
 
@@ -142,50 +169,76 @@ void measure_residuals(Adjustment& a, LightSolution& solution) {
 
 // Covariances of the measured lights, in their order; empty if the problem is too degenerate for any.
 struct LightCovariances {
-  std::vector<Eigen::Matrix3d> whole, own;  // own: the line held fixed
+  std::vector<Eigen::Matrix3d> whole, own;  // own: line and lens held fixed
   Eigen::Matrix3d mean_of_pairs = Eigen::Matrix3d::Zero();
+  std::vector<Eigen::Matrix<double, kLensParameters, 3>> with_lens;  // a free lens's, in its chart
+  LensMatrix lens = LensMatrix::Zero();
 };
 
-LightCovariances light_covariances(Adjustment& a, const LightSolution& solution) {
+using BlockPair = std::pair<const double*, const double*>;
+
+template <int Rows, int Columns>
+Eigen::Matrix<double, Rows, Columns> block_of(const ceres::Covariance& covariance, const double* first, const double* second) {
+  Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor> block;
+  covariance.GetCovarianceBlock(first, second, block.data());
+  return block;
+}
+
+// What all lights share: the line's five numbers, and the lens's eight if it is free.
+Eigen::MatrixXd shared_block(const ceres::Covariance& covariance, const Adjustment& a, bool free_lens) {
+  Eigen::MatrixXd shared(free_lens ? 13 : 5, free_lens ? 13 : 5);
+  shared.topLeftCorner<5, 5>() = block_of<5, 5>(covariance, a.line.data(), a.line.data());
+  if (!free_lens) return shared;
+  shared.topRightCorner<5, 8>() = block_of<5, 8>(covariance, a.line.data(), a.lens.data());
+  shared.bottomLeftCorner<8, 5>() = shared.topRightCorner<5, 8>().transpose();
+  shared.bottomRightCorner<8, 8>() = block_of<8, 8>(covariance, a.lens.data(), a.lens.data());
+  return shared;
+}
+
+std::vector<BlockPair> wanted_blocks(const Adjustment& a, const std::vector<const double*>& lights, bool free_lens) {
+  std::vector<BlockPair> wanted{{a.line.data(), a.line.data()}};
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    for (std::size_t j = i; j < lights.size(); ++j) wanted.emplace_back(lights[i], lights[j]);
+    wanted.emplace_back(lights[i], a.line.data());
+    if (free_lens) wanted.emplace_back(lights[i], a.lens.data());
+  }
+  if (free_lens) wanted.insert(wanted.end(), {{a.line.data(), a.lens.data()}, {a.lens.data(), a.lens.data()}});
+  return wanted;
+}
+
+LightCovariances light_covariances(Adjustment& a, const LightSolution& solution, bool free_lens) {
   std::vector<const double*> lights;
   for (std::size_t v = 0; v < a.lights.size(); ++v) {
     if (solution.lights[v].measured) lights.push_back(a.lights[v].data());
   }
-  std::vector<std::pair<const double*, const double*>> wanted;
-  for (std::size_t i = 0; i < lights.size(); ++i) {
-    for (std::size_t j = i; j < lights.size(); ++j) wanted.emplace_back(lights[i], lights[j]);
-  }
   LightCovariances result;
-  if (wanted.empty()) return result;
-  std::vector<std::pair<const double*, const double*>> with_line = wanted;
-  for (const double* light : lights) with_line.emplace_back(light, a.line.data());
-  with_line.emplace_back(a.line.data(), a.line.data());
+  if (lights.empty()) return result;
   ceres::Covariance::Options options;
-  options.algorithm_type = ceres::DENSE_SVD;  // some 60 unknowns; tolerates a weakly determined direction
+  options.algorithm_type = ceres::DENSE_SVD;  // some 90 unknowns; tolerates a weakly determined direction
   options.null_space_rank = -1;
   ceres::Covariance covariance(options);
-  if (!covariance.Compute(with_line, &a.problem)) return result;
-  Eigen::Matrix<double, 5, 5, Eigen::RowMajor> line;
-  covariance.GetCovarianceBlock(a.line.data(), a.line.data(), line.data());
-  const double scale2 = solution.sigma_scale * solution.sigma_scale;
-  int between = 0;
-  for (const auto& [first, second] : wanted) {
-    Eigen::Matrix<double, 3, 3, Eigen::RowMajor> block;
-    covariance.GetCovarianceBlock(first, second, block.data());
-    if (first == second) {
-      // Not by a second problem with the line held constant: Ceres 2.1's dense SVD was seen to return some of its blocks
-      // five times too large, larger than with the line free.
-      Eigen::Matrix<double, 3, 5, Eigen::RowMajor> mixed;
-      covariance.GetCovarianceBlock(first, a.line.data(), mixed.data());
-      const Eigen::Matrix3d by_line = mixed * line.ldlt().solve(mixed.transpose());
-      result.whole.push_back(scale2 * block);
-      result.own.push_back(scale2 * (block - by_line));
-    } else {
-      result.mean_of_pairs += 0.5 * scale2 * (block + block.transpose());
-      ++between;
+  if (!covariance.Compute(wanted_blocks(a, lights, free_lens), &a.problem)) return result;
+  const Eigen::MatrixXd shared = shared_block(covariance, a, free_lens);
+  // A scale of all residuals would blow up the lens's prior too, of which the highlights know nothing.
+  const double scale2 = free_lens ? 1.0 : solution.sigma_scale * solution.sigma_scale;
+  if (free_lens) result.lens = scale2 * shared.bottomRightCorner<8, 8>();
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    // Not by a second problem with the line held constant: Ceres 2.1's dense SVD was seen to return some of its blocks
+    // five times too large, larger than with the line free.
+    Eigen::MatrixXd mixed(3, shared.cols());
+    mixed.leftCols<5>() = block_of<3, 5>(covariance, lights[i], a.line.data());
+    if (free_lens) mixed.rightCols<8>() = block_of<3, 8>(covariance, lights[i], a.lens.data());
+    if (free_lens) result.with_lens.push_back(scale2 * mixed.rightCols<8>().transpose());
+    const Eigen::Matrix3d block = block_of<3, 3>(covariance, lights[i], lights[i]);
+    result.whole.push_back(scale2 * block);
+    result.own.push_back(scale2 * (block - mixed * shared.ldlt().solve(Eigen::MatrixXd(mixed.transpose()))));
+    for (std::size_t j = i + 1; j < lights.size(); ++j) {
+      const Eigen::Matrix3d pair = block_of<3, 3>(covariance, lights[i], lights[j]);
+      result.mean_of_pairs += 0.5 * scale2 * (pair + pair.transpose());
     }
   }
-  if (between > 0) result.mean_of_pairs /= between;
+  const std::size_t pairs = lights.size() * (lights.size() - 1) / 2;
+  if (pairs > 0) result.mean_of_pairs /= static_cast<double>(pairs);
   return result;
 }
 
@@ -200,8 +253,10 @@ bool is_credible(const MeasuredLight& light, const Eigen::Vector3d& position, co
   return distance < kFarthestLines * line.spacing_m * std::max(1, line.count - 1) && worst < kLeastKnown * distance;
 }
 
-void fill_covariances(Adjustment& a, LightSolution& solution) {
-  const LightCovariances covariances = light_covariances(a, solution);
+void fill_covariances(Adjustment& a, bool free_lens, LightSolution& solution) {
+  const LightCovariances covariances = light_covariances(a, solution, free_lens);
+  const LensMatrix& root = a.lens_chart.root;
+  if (free_lens && !covariances.whole.empty()) solution.lens->covariance = root * covariances.lens * root.transpose();
   solution.shared_covariance = covariances.mean_of_pairs;
   std::size_t next = 0;
   for (std::size_t v = 0; v < solution.lights.size(); ++v) {
@@ -213,7 +268,9 @@ void fill_covariances(Adjustment& a, LightSolution& solution) {
       continue;
     }
     light.covariance = covariances.whole[next];
-    light.own_covariance = covariances.own[next++];
+    light.own_covariance = covariances.own[next];
+    if (free_lens) light.with_lens = root * covariances.with_lens[next];
+    ++next;
     const auto& p = a.lights[v];
     light.measured = is_credible(light, {p[0], p[1], p[2]}, solution.line);
   }
@@ -227,117 +284,12 @@ void check_rings(const std::vector<HighlightPixel>& rings) {
   }
 }
 
-double median_error_px(const CameraModel& camera, const SphereLine& line, const std::vector<HighlightPixel>& highlights,
-                       const Eigen::Vector3d& light) {
-  std::vector<double> errors;
-  for (const HighlightPixel& seen : highlights) {
-    const double error = (highlight_pixel(camera, line.sphere(seen.sphere), light) - seen.pixel).norm();
-    errors.push_back(std::isfinite(error) ? error : std::numeric_limits<double>::infinity());
-  }
-  // The upper median: at least half of the highlights agree with the light this well.
-  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-  std::nth_element(errors.begin(), middle, errors.end());
-  return *middle;
-}
-
 }  // namespace
 
-std::optional<Eigen::Vector3d> nearest_point(const std::vector<Ray>& rays) {
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  for (const Ray& ray : rays) {
-    const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - ray.direction * ray.direction.transpose();
-    normal += across;
-    right += across * ray.origin;
-  }
-  const Eigen::FullPivLU<Eigen::Matrix3d> lu(normal);
-  if (rays.size() < 2 || lu.rcond() < 1e-9) return std::nullopt;  // parallel within some 1e-5 rad
-  return lu.solve(right);
-}
+namespace {
 
-std::optional<Eigen::Vector3d> light_from_highlights(const CameraModel& camera, const SphereLine& line,
-                                                     const std::vector<HighlightPixel>& highlights) {
-  std::vector<Ray> rays;
-  for (const HighlightPixel& seen : highlights) {
-    const auto ray = mirrored_ray(line.sphere(seen.sphere), {Eigen::Vector3d::Zero(), camera.unproject(seen.pixel)});
-    if (ray) rays.push_back(*ray);
-  }
-  // All rays together are the most precise, but one highlight of something else would spoil them; then some pair wins.
-  std::optional<Eigen::Vector3d> best;
-  double best_error = std::numeric_limits<double>::infinity();
-  const auto consider = [&](const std::vector<Ray>& chosen) {
-    const auto candidate = nearest_point(chosen);
-    if (!candidate) return;
-    const double error = median_error_px(camera, line, highlights, *candidate);
-    if (error < best_error) {
-      best_error = error;
-      best = candidate;
-    }
-  };
-  consider(rays);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    for (std::size_t j = i + 1; j < rays.size(); ++j) consider({rays[i], rays[j]});
-  }
-  return best;
-}
-
-Eigen::Vector2d highlight_pixel(const CameraModel& camera, const MirrorSphere& sphere, const Eigen::Vector3d& light) {
-  return camera.project(mirror_point(sphere, Eigen::Vector3d::Zero(), light));
-}
-
-std::vector<Eigen::Vector2d> ring_highlight_pixels(const CameraModel& camera, const MirrorSphere& sphere,
-                                                   double ring_radius_m) {
-  // Opposite emitters cancel to first order; eight catch what is left, since the next terms are of fourth order.
-  constexpr int kEmitters = 8;
-  std::vector<Eigen::Vector2d> pixels;
-  for (int i = 0; i < kEmitters; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / kEmitters;
-    pixels.push_back(
-        highlight_pixel(camera, sphere, {ring_radius_m * std::cos(angle), ring_radius_m * std::sin(angle), 0.0}));
-  }
-  return pixels;
-}
-
-Eigen::Vector2d ring_highlight_pixel(const CameraModel& camera, const MirrorSphere& sphere, double ring_radius_m) {
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  const std::vector<Eigen::Vector2d> pixels = ring_highlight_pixels(camera, sphere, ring_radius_m);
-  for (const Eigen::Vector2d& pixel : pixels) sum += pixel;
-  return sum / static_cast<double>(pixels.size());
-}
-
-Eigen::Vector2d disc_highlight_pixel(const CameraModel& camera, const MirrorSphere& sphere,
-                                     const Eigen::Vector3d& light, const EmitterDisc& emitter) {
-  if (!(emitter.radius_m > 0.0)) return highlight_pixel(camera, sphere, light);
-  const Eigen::Vector3d normal = (emitter.faces - light).normalized();
-  const Eigen::Vector3d across = normal.unitOrthogonal(), other = normal.cross(across);
-  constexpr int kPlaces = 8;  // as for the ring flash
-  const double radius = emitter.radius_m / std::numbers::sqrt2;
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (int i = 0; i < kPlaces; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / kPlaces;
-    sum += highlight_pixel(camera, sphere, light + radius * (std::cos(angle) * across + std::sin(angle) * other));
-  }
-  return sum / kPlaces;
-}
-
-LightSolution solve_lights(const CameraModel& camera, const SphereLine& start, double ring_radius_m,
-                           const std::vector<HighlightPixel>& rings,
-                           const std::vector<std::vector<HighlightPixel>>& points, const EmitterDisc& emitter) {
-  check_rings(rings);
-  Adjustment adjustment(start);
-  LightSolution solution;
-  solution.lights.resize(points.size());
-  adjustment.lights.resize(points.size());
-  add_rings(adjustment, camera, ring_radius_m, rings);
-  for (std::size_t v = 0; v < points.size(); ++v) {
-    solution.lights[v].highlights = static_cast<int>(points[v].size());
-    if (points[v].size() < kMinHighlights) continue;
-    const auto first = light_from_highlights(camera, start, points[v]);
-    if (!first || !first->allFinite()) continue;
-    solution.lights[v].measured = true;
-    adjustment.lights[v] = {first->x(), first->y(), first->z()};
-    add_points(adjustment, camera, static_cast<int>(v), points[v], emitter);
-  }
+// Returns twice the cost: chi square, with outliers held down.
+double solve(Adjustment& adjustment, LightSolution& solution) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.max_num_iterations = 100;
@@ -347,9 +299,39 @@ LightSolution solve_lights(const CameraModel& camera, const SphereLine& start, d
   ceres::Solver::Summary summary;
   ceres::Solve(options, &adjustment.problem, &summary);
   solution.converged = summary.termination_type == ceres::CONVERGENCE;
+  return 2.0 * summary.final_cost;
+}
+
+}  // namespace
+
+LightSolution solve_lights(const CameraModel& camera, const SphereLine& start, double ring_radius_m,
+                           const std::vector<HighlightPixel>& rings,
+                           const std::vector<std::vector<HighlightPixel>>& points, const EmitterDisc& emitter,
+                           const std::optional<LensMatrix>& lens_covariance) {
+  check_rings(rings);
+  Adjustment adjustment(start, camera, lens_covariance);
+  LightSolution solution;
+  solution.lights.resize(points.size());
+  adjustment.lights.resize(points.size());
+  add_rings(adjustment, ring_radius_m, rings);
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    solution.lights[v].highlights = static_cast<int>(points[v].size());
+    if (points[v].size() < kMinHighlights) continue;
+    const auto first = light_from_highlights(camera, start, points[v]);
+    if (!first || !first->allFinite()) continue;
+    solution.lights[v].measured = true;
+    adjustment.lights[v] = {first->x(), first->y(), first->z()};
+    add_points(adjustment, static_cast<int>(v), points[v], emitter);
+  }
+  const double chi2_held = solve(adjustment, solution);
+  if (lens_covariance) {
+    adjustment.problem.SetParameterBlockVariable(adjustment.lens.data());
+    const double chi2_free = solve(adjustment, solution);
+    solution.lens = {adjustment.lens_chart.at(adjustment.lens.data()), LensMatrix::Zero(), chi2_held - chi2_free};
+  }
   solution.line = adjustment.chart.at(adjustment.line.data());
   measure_residuals(adjustment, solution);
-  fill_covariances(adjustment, solution);
+  fill_covariances(adjustment, lens_covariance.has_value(), solution);
   for (std::size_t v = 0; v < points.size(); ++v) {
     const auto& light = adjustment.lights[v];
     if (solution.lights[v].measured) solution.lights[v].position = {light[0], light[1], light[2]};

@@ -159,8 +159,8 @@ HighlightShape ring_shape(const CameraModel& camera, const MirrorSphere& sphere,
 
 }  // namespace
 
-LightSolution measure_lights(const RadianceReader& reader, const std::vector<SphereShots>& views,
-                             const CameraModel& camera, const RigDescription& rig, Progress& progress) {
+SphereHighlights read_sphere_highlights(const RadianceReader& reader, const std::vector<SphereShots>& views,
+                                        const CameraModel& camera, const RigDescription& rig, Progress& progress) {
   std::atomic<std::int64_t> done{0};
   const auto step = [&] { progress.update(++done); };
   progress.begin("sphere shots", static_cast<std::int64_t>(2 * views.size()), "shots");
@@ -186,7 +186,12 @@ LightSolution measure_lights(const RadianceReader& reader, const std::vector<Sph
   refit_highlights(reader, point, on_sphere, point_views);
   std::vector<std::vector<HighlightPixel>> points;
   for (const SeenInView& view : point_views) points.push_back(fitted(view));
-  return solve_lights(camera, line, ring_radius_m, rings, points);
+  return {rings, points, line};
+}
+
+LightSolution measure_lights(const SphereHighlights& seen, const CameraModel& camera, const RigDescription& rig,
+                             const std::optional<LensMatrix>& lens_covariance) {
+  return solve_lights(camera, seen.line, rig.ring_flash.radius_m, seen.rings, seen.points, {}, lens_covariance);
 }
 
 }  // namespace lumitexel

@@ -58,19 +58,6 @@ ProjectedPoint project_with_derivatives(const CameraModel& c, const Eigen::Vecto
   return result;
 }
 
-CameraModel with_lens_step(const CameraModel& camera, const LensVector& step) {
-  CameraModel c = camera;
-  c.focal_x_px += step[0];
-  c.focal_y_px += step[1];
-  c.principal_x_px += step[2];
-  c.principal_y_px += step[3];
-  c.k1 += step[4];
-  c.k2 += step[5];
-  c.p1 += step[6];
-  c.p2 += step[7];
-  return c;
-}
-
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   Eigen::Matrix3d m;
   m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "processing/calibration/lens/camera_model.h"
+#include "processing/calibration/lens/lens_vector.h"
 #include "processing/surface/mesh.h"
 
 namespace lumitexel {
@@ -36,15 +37,13 @@ struct MeshExtent {
 };
 MeshExtent extent_of(const Mesh& mesh);
 
-// A pixel and its derivatives by the point in the camera's frame and by the lens: focal x, y, principal x, y, k1, k2, p1, p2.
-using LensVector = Eigen::Matrix<double, 8, 1>;
+// A pixel and its derivatives by the point in the camera's frame and by the lens.
 struct ProjectedPoint {
   Eigen::Vector2d pixel;
   Eigen::Matrix<double, 2, 3> by_point;
-  Eigen::Matrix<double, 2, 8> by_lens;
+  Eigen::Matrix<double, 2, kLensParameters> by_lens;
 };
 ProjectedPoint project_with_derivatives(const CameraModel& camera, const Eigen::Vector3d& x_in_camera);
-CameraModel with_lens_step(const CameraModel& camera, const LensVector& step);
 
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v);  // cross_matrix(v) w = v x w
 Eigen::Matrix3d rotation_by(const Eigen::Vector3d& turn);

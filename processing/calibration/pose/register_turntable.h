@@ -12,15 +12,10 @@
 #include <vector>
 
 #include "processing/calibration/pose/register_view.h"
-#include "processing/calibration/pose/turntable_equations.h"
+#include "processing/calibration/pose/turntable_start.h"
 #include "rig/rig_description.h"
 
 namespace lumitexel {
-
-struct TurntableView {
-  const ContourLookup* contour = nullptr;  // null: a view with tags only
-  double angle_deg = 0;                    // of the table, as read back
-};
 
 // Corners in the order of TagDescription::corners().
 struct TagObservation {
@@ -30,17 +25,10 @@ struct TagObservation {
   double sigma_px = 0;  // of a corner, per axis
 };
 
-struct TurntableStart {
-  CameraModel camera;
-  Eigen::Isometry3d camera_from_table = Eigen::Isometry3d::Identity();  // with the table at 0 degrees
-  Eigen::Isometry3d table_from_mesh = Eigen::Isometry3d::Identity();
-  Eigen::Vector3d axis_in_table = Eigen::Vector3d::UnitZ(), axis_point_in_table = Eigen::Vector3d::Zero();
-};
-
 struct TurntableOptions {
   SearchRange search;                  // how far the mesh may be from its start; zeros: within some pixels
   double angle_sigma_deg = 0;          // of an angle as read back; 0: exact
-  std::optional<Eigen::Matrix<double, 8, 8>> lens_covariance;  // prior, order of LensVector; none: the lens is exact
+  std::optional<LensMatrix> lens_covariance;  // prior; none: the lens is exact
   std::optional<RimModel> model;       // none: the one that fits better
   std::size_t rim_points = 10000;      // over all views
   double least_turn_share = 0.012;     // see ViewRegistrationOptions
@@ -59,6 +47,8 @@ struct RegisteredView {
   double silhouette_px = 0, explained = 0;             // median distance; share of the outline on the contour
   double tag_rms_px = 0;
   VarianceShares shares;
+  Eigen::MatrixXd by_unknowns;  // derivatives of the PoseStep by all unknowns
+  void state(const PoseCovariance& of_pose);  // covariance, sigma_m and sigma_deg
 };
 
 struct TurntableRegistration {

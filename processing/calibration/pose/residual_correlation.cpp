@@ -10,6 +10,7 @@ namespace lumitexel {
 namespace {
 
 constexpr std::size_t kBins = 24;
+using RowsTogether = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;  // pairs of rows are what is read
 
 // Pairs nearer than reach_m, found along one sorted axis; visit(i, j, bin) with i < j in that order.
 template <class Visit>
@@ -71,11 +72,11 @@ FitCovariance correlated_scores(const WeightedResiduals& fit, double reach_m) {
   FitCovariance result{Eigen::MatrixXd::Zero(parameters, parameters), 0.0, 0.0};
   if (rows == 0) return result;
   const double variance = (fit.weight.array() * fit.residual.array().square()).sum() / fit.weight.sum();
-  const Eigen::MatrixXd scores = fit.weight.asDiagonal() * fit.jacobian;
+  const RowsTogether scores = fit.weight.asDiagonal() * fit.jacobian;
   const Eigen::MatrixXd alone = variance * (scores.transpose() * scores);
   const std::vector<double> correlated = covariance_function(fit, reach_m);
   // For each residual what its later neighbours contribute together, then one product.
-  Eigen::MatrixXd neighbours = Eigen::MatrixXd::Zero(rows, parameters);
+  RowsTogether neighbours = RowsTogether::Zero(rows, parameters);
   double pairs = 0.0;
   each_near_pair(fit.x_in_mesh, reach_m, [&](std::size_t i, std::size_t j, std::size_t bin) {
     if (correlated[bin] <= 0.0) return;

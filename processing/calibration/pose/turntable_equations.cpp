@@ -79,7 +79,7 @@ TurntableModel moved(const TurntableModel& model, const TurntableUnknowns& unkno
     result.mesh_from_table.translation() =
         turn * (model.mesh_from_table.translation() - centre) + centre + step.segment<3>(unknowns.tags + 3);
   }
-  if (unknowns.lens >= 0) result.camera = with_lens_step(model.camera, step.segment<8>(unknowns.lens));
+  if (unknowns.lens >= 0) result.camera = with_lens_vector(model.camera, lens_vector(model.camera) + step.segment<8>(unknowns.lens));
   if (unknowns.angles >= 0) {
     for (std::size_t v = 0; v < result.angle_offset_rad.size(); ++v)
       result.angle_offset_rad[v] += step[unknowns.angles + static_cast<Eigen::Index>(v)];

@@ -141,6 +141,57 @@ TEST(LightExtremes, HiddenSpheresCostAccuracyNotTruth) {
   }
 }
 
+// A lens known to some sigma, and off by as much, moves lights by more than their highlights' noise: with the lens held at
+// what is believed the stated covariance does not own up to it, with the lens free it does. The mean square per axis is
+// one; 25 seeds, whose lights share their lens: one sigma some 0.3.
+TEST(LightExtremes, AnUncertainLensIsInTheLightsCovariance) {
+  const SphereRig rig = simulated_sphere_rig();
+  LensVector sigma;
+  sigma << 12.0, 12.0, 3.0, 3.0, 0.0, 0.0, 0.0, 0.0;  // 0.4 % of the focal length; the distortion is known
+  const LensMatrix covariance = sigma.cwiseAbs2().asDiagonal();
+  double held = 0.0, free = 0.0, gain = 0.0;
+  constexpr int kSeeds = 25;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    LensVector error;
+    for (double& e : error) e = normal(random);
+    SphereRig believed = rig;
+    believed.camera = with_lens_vector(rig.camera, lens_vector(rig.camera) + sigma.cwiseProduct(error));
+    const RigHighlights seen = noisy_highlights(rig, kSigma_px, seed);
+    for (const bool with_lens : {false, true}) {
+      const LightSolution solution = with_lens ? solve_lights(believed.camera, solved_lights(believed, seen).line, rig.ring_radius_m,
+                                                              seen.rings, seen.points, {}, covariance)
+                                               : solved_lights(believed, seen);
+      for (std::size_t v = 0; v < rig.lights.size(); ++v) {
+        ASSERT_TRUE(solution.lights[v].measured) << seed;
+        const Eigen::Vector3d off = solution.lights[v].position - rig.lights[v];
+        (with_lens ? free : held) += off.dot(solution.lights[v].covariance.inverse() * off) / (12.0 * kSeeds);
+      }
+      if (!with_lens) continue;
+      ASSERT_TRUE(solution.lens);
+      gain += solution.lens->chi2_gain / kSeeds;
+      EXPECT_GT(solution.lens->chi2_gain, -1e-6);
+      EXPECT_EQ(solution.lens->camera.k1, believed.camera.k1);  // without variance it stays
+      for (int i = 0; i < 4; ++i) EXPECT_LE(solution.lens->covariance(i, i), 1.001 * covariance(i, i));
+    }
+  }
+  std::printf("lens held: mean square over stated %.2f; free: %.2f; chi square lower by %.2f\n", held, free, gain);
+  EXPECT_LT(free, 1.7);
+  EXPECT_GT(free, 0.5);
+  EXPECT_GT(held, 1.5 * free);
+}
+
+// What is a kilometre away in the camera's frame is no coordinate of this kernel; where the rig's origin is does not enter. A light of that
+// distance is refused, for its spheres cannot tell it from one at infinity.
+TEST(LightExtremes, ALightAKilometreAwayIsRefused) {
+  SphereRig rig = simulated_sphere_rig();
+  rig.lights = {{600.0, -500.0, -600.0}};
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    EXPECT_FALSE(solved_lights(rig, noisy_highlights(rig, kSigma_px, seed)).lights[0].measured) << seed;
+  }
+}
+
 // Against the centroid over the whole disc, evenly sampled.
 TEST(EmitterDisc, IsSeenAtItsReflectionsCentroid) {
   const SphereRig rig = simulated_sphere_rig();

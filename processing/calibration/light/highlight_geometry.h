@@ -1,0 +1,47 @@
+// Where a light's highlights are on a line of spheres, and back: a first estimate of the light from its highlights.
+//
+// Everything here is in the camera's frame, in metres; pixels are distorted pixels of the camera.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "processing/calibration/lens/camera_model.h"
+#include "processing/calibration/light/sphere_line.h"
+
+namespace lumitexel {
+
+struct HighlightPixel {
+  int sphere = 0;  // index along the line
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  double sigma_px = 0.05;  // per axis
+};
+
+// The point nearest to all rays in the least squares sense. None if the rays are fewer than two or parallel.
+std::optional<Eigen::Vector3d> nearest_point(const std::vector<Ray>& rays);
+
+// First estimate of one light from its highlights: the nearest point of all mirrored rays, or of a pair of them if that
+// agrees better with the median highlight (so a minority of false ones does no harm). None if fewer than two of them
+// lie on their spheres.
+std::optional<Eigen::Vector3d> light_from_highlights(const CameraModel& camera, const SphereLine& line,
+                                                     const std::vector<HighlightPixel>& highlights);
+
+// Pixel at which the camera sees `light` mirrored in the sphere.
+Eigen::Vector2d highlight_pixel(const CameraModel& camera, const MirrorSphere& sphere, const Eigen::Vector3d& light);
+// Pixels at which it sees emitters that stand evenly around the lens in the camera's xy plane.
+std::vector<Eigen::Vector2d> ring_highlight_pixels(const CameraModel& camera, const MirrorSphere& sphere,
+                                                   double ring_radius_m);
+// Their centroid: that of the reflection of a ring of the given radius.
+Eigen::Vector2d ring_highlight_pixel(const CameraModel& camera, const MirrorSphere& sphere, double ring_radius_m);
+
+// A light of some extent: an evenly bright disc about its position, facing a point (the arm's pivot). Its highlight is the
+// centroid of the disc's reflection, which to second order is that of a ring of radius / sqrt(2).
+struct EmitterDisc {
+  double radius_m = 0;  // 0: a point
+  Eigen::Vector3d faces = Eigen::Vector3d::UnitZ();  // camera's frame, m
+};
+Eigen::Vector2d disc_highlight_pixel(const CameraModel& camera, const MirrorSphere& sphere,
+                                     const Eigen::Vector3d& light, const EmitterDisc& emitter);
+
+}  // namespace lumitexel
