@@ -1,0 +1,43 @@
+#include "processing/brdf/experiment/five_materials.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+namespace lumitexel {
+namespace {
+
+// The true BRDFs themselves score as the bound's expectation does not: no error, and Bayes' accuracy.
+TEST(FiveMaterials, TheTruthScoresWithoutError) {
+  FiveMaterialsOptions options;
+  options.gaussian = true;
+  options.lumitexels = 500;
+  const FiveMaterials world = make_five_materials(1, options);
+  Clustering truth;
+  for (const Brdf& brdf : world.truth) truth.materials.push_back({{brdf, ErrorModel(world.relative_sigma, 1e-6)}, {}, 0});
+  truth.label = world.label;
+  const FiveMaterialsScore result = score(world, truth);
+  EXPECT_TRUE(result.all_found);
+  EXPECT_NEAR(result.worst_exponent, 0.0, 1e-12);
+  EXPECT_EQ(result.accuracy, 1.0);
+  EXPECT_GT(result.bayes_accuracy, 0.6);
+  EXPECT_LT(result.bayes_accuracy, 1.0);
+}
+
+TEST(FiveMaterials, ASmallExperimentFindsAllFive) {
+  FiveMaterialsOptions options;
+  options.lumitexels = 1200;
+  const FiveMaterials world = make_five_materials(2, options);
+  LumitexelList all(world.label.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  ClusterOptions cluster;
+  cluster.materials = 5;
+  cluster.errors = ErrorSource::Estimated;
+  cluster.final_lumitexels = all.size();
+  const FiveMaterialsScore result = score(world, cluster_materials(world.observations, all, cluster, [](int) {}));
+  EXPECT_TRUE(result.all_found);
+  EXPECT_LT(result.worst_exponent, 0.01);  // the bound is some 0.2 % for each of the five
+}
+
+}  // namespace
+}  // namespace lumitexel
