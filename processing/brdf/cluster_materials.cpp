@@ -58,7 +58,7 @@ void set_shares(const Responsibilities& r, Mixture& mixture) {
   for (double& share : mixture.share) share = std::max(share, 1e-300);  // its logarithm is taken
 }
 
-// Too many materials, settled, and how they were fitted.
+// As many materials as wanted, and how they were fitted.
 struct Search {
   MaterialFitOptions fit;
   MaterialModel whole;
@@ -67,7 +67,7 @@ struct Search {
 
 // While materials are told apart they all have a lobe: what a matte whole hides, a part may show.
 Search search_with(bool estimate_error, const Observations& observations, const LumitexelList& selection, const ClusterOptions& options,
-                   int most) {
+                   int most, const std::function<void(int)>& report) {
   Search search{options.fit, {}, {}};
   search.fit.choose_lobes = false;
   search.fit.most_lobes = std::min(1, options.fit.most_lobes);
@@ -76,15 +76,17 @@ Search search_with(bool estimate_error, const Observations& observations, const 
   search.whole = whole.model;
   search.mixture = split_materials(whole, observations, selection, most, search.fit);
   maximise_expectation(search.mixture, observations, selection, search.fit, kSearchRounds);
+  merge_materials(search.mixture, observations, selection, {options.materials, search.fit}, report);
   return search;
 }
 
-Search search_for_materials(const Observations& observations, const LumitexelList& selection, const ClusterOptions& options, int most) {
+Search search_for_materials(const Observations& observations, const LumitexelList& selection, const ClusterOptions& options, int most,
+                            const std::function<void(int)>& report) {
   if (options.errors != ErrorSource::Auto) {
-    return search_with(options.errors == ErrorSource::Estimated, observations, selection, options, most);
+    return search_with(options.errors == ErrorSource::Estimated, observations, selection, options, most, report);
   }
-  Search given = search_with(false, observations, selection, options, most);
-  Search estimated = search_with(true, observations, selection, options, most);
+  Search given = search_with(false, observations, selection, options, most, report);
+  Search estimated = search_with(true, observations, selection, options, most, report);
   return estimated_errors_serve(given.mixture, estimated.mixture, observations, selection) ? estimated : given;
 }
 
@@ -105,9 +107,9 @@ Clustering cluster_materials(const Observations& observations, const LumitexelLi
   const int most = wanted == 1 ? 1 : std::min(2 * wanted, wanted + kMostExtra);
   report(0);
 
-  Search search = search_for_materials(observations, selection, options, most);
+  Search search = search_for_materials(observations, selection, options, most, report);
   Mixture& mixture = search.mixture;
-  Responsibilities r = merge_materials(mixture, observations, selection, {options.materials, search.fit}, report);
+  Responsibilities r = responsibilities(mixture, observations, selection);
 
   MaterialFitOptions settled = options.fit;
   settled.estimate_error = search.fit.estimate_error;

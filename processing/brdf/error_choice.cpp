@@ -11,7 +11,7 @@ bool estimated_errors_serve(const Mixture& given, const Mixture& estimated, cons
   const auto of_given = left_out_errors(given, observations, lumitexels, clip);
   const auto of_estimated = left_out_errors(estimated, observations, lumitexels, clip);
   const SquaredError total = total_error(of_given);
-  return excess_in_standard_errors(relative_errors(of_estimated, total), relative_errors(of_given, total)) <= kStandardErrors;
+  return excess_in_standard_errors(relative_errors(of_estimated, total), relative_errors(of_given, total)) < -kStandardErrors;
 }
 
 }  // namespace lumitexel

@@ -9,8 +9,9 @@
 
 namespace lumitexel {
 
-// Two mixtures learnt from the same lumitexels, with the error model given and with error models estimated. False if the estimated one
-// predicts left-out samples (left_out_error.h) worse by more than twice the paired difference's standard error.
+// Two mixtures learnt from the same lumitexels, with the error model given and with error models estimated. True only if the estimated one
+// predicts left-out samples (left_out_error.h) better by more than twice the paired difference's standard error: to be wrong about it costs
+// little one way, a model without its highlights the other.
 bool estimated_errors_serve(const Mixture& given, const Mixture& estimated, const Observations& observations,
                             const LumitexelList& lumitexels);
 

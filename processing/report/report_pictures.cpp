@@ -69,12 +69,14 @@ std::string lobe_text(const Brdf& brdf) {
   for (int c = 0; c < brdf.channels; ++c) {
     text += (c > 0 ? " / " : "") + html::number(std::numbers::pi * brdf.diffuse[static_cast<std::size_t>(c)], 2);
   }
+  const bool lafortune = brdf.family == BrdfFamily::Lafortune;
+  const std::string strength = lafortune ? "peak (1/sr)" : brdf.family == BrdfFamily::Ggx ? "F0" : "albedo";
   for (const auto& lobe : brdf.lobes) {
-    text += "; lobe peak ";
+    text += "; " + std::string(to_string(brdf.family)) + " lobe, " + strength + " ";
     for (int c = 0; c < brdf.channels; ++c) {
       text += (c > 0 ? " / " : "") + html::number(std::exp(lobe[static_cast<std::size_t>(c)].log_strength), 2);
     }
-    text += " 1/sr, exponent ";
+    text += lafortune ? ", exponent " : ", alpha ";
     for (int c = 0; c < brdf.channels; ++c) {
       text += (c > 0 ? " / " : "") + html::number(std::exp(lobe[static_cast<std::size_t>(c)].log_shape), 2);
     }
