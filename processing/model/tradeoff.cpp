@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <utility>
 
 #include "drivers/error.h"
@@ -33,6 +34,12 @@ class SettingProgress final : public Progress {
 
 // Geometry, samples, materials, weights, comparison; bases and weights again.
 int stages_of(const FitOptions& options) { return options.principal_functions ? 7 : 5; }
+
+double cpu_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
 
 void take_costs(const std::vector<StageCost>& stages, bool own_memory, TradeoffMeasurement& measurement) {
   std::int64_t peak_bytes = 0;
@@ -75,7 +82,9 @@ void fit_and_judge(const CalibratedSession& session, const CalibratedSession& he
   measurement.fit_views = views;
   try {
     const bool own_memory = restart_peak_memory();
+    const double cpu_before = cpu_seconds();
     const FittedModel fitted = fit_model(with_fit_views(session, views), setting.options, {}, progress);
+    measurement.cpu_seconds = cpu_seconds() - cpu_before;
     measurement.materials = fitted.model.materials.size();
     take_costs(fitted.summary.stages, own_memory, measurement);
     take_errors(evaluate_model(fitted.model, heldout, progress), measurement);

@@ -28,7 +28,8 @@ struct TradeoffMeasurement {
   TradeoffSetting setting;
   std::string failure;  // why there is no measurement; empty if there is one
   std::size_t fit_views = 0, materials = 0;
-  double seconds = 0;                      // of the fit: calibration and comparison are the same for all
+  double seconds = 0;                      // wall time of the fit: calibration and comparison are the same for all
+  double cpu_seconds = 0;                  // of all threads; hardly grows where other programs keep the processors busy
   std::optional<std::int64_t> peak_bytes;  // of the process during this fit; nothing where the system cannot tell
   ErrorWithSpread relative, clipped, square_root;
   std::vector<double> clipped_by_view;     // of the held-out views, in the session's order

@@ -30,6 +30,7 @@ Json measured_json(const TradeoffMeasurement& measurement) {
   return {{"materials", measurement.materials},
           {"fit_views", measurement.fit_views},
           {"seconds", measurement.seconds},
+          {"cpu_seconds", measurement.cpu_seconds},
           {"peak_bytes", measurement.peak_bytes ? Json(*measurement.peak_bytes) : Json(nullptr)},
           {"heldout",
            {{"relative_rms", to_json(measurement.relative)},

@@ -62,9 +62,9 @@ std::string error_section(const Tradeoff& tradeoff) {
       continue;
     }
     rows.push_back({m.setting.name, front[i] ? "front" : "", with_spread(m.clipped), with_spread(m.relative), with_spread(m.square_root),
-                    html::number(m.seconds), memory(m.peak_bytes), std::to_string(m.materials), std::to_string(m.fit_views)});
+                    html::number(m.seconds), html::number(m.cpu_seconds), memory(m.peak_bytes), std::to_string(m.materials), std::to_string(m.fit_views)});
   }
-  std::string body = html::table({"setting", "", "clipped error", "relative", "square roots", "seconds", "peak MB", "materials", "views"}, rows);
+  std::string body = html::table({"setting", "", "clipped error", "relative", "square roots", "seconds", "CPU seconds", "peak MB", "materials", "views"}, rows);
   if (!failures.empty()) body += "<h3>Not measured</h3><ul>" + failures + "</ul>";
   return html::section("Each setting",
                        "RMS of rendering minus photograph over that of the photograph, over all held-out pixels; clipped: both at the photograph's "
@@ -93,7 +93,7 @@ std::string meaning_section(const Tradeoff& tradeoff) {
   for (const TradeoffMeasurement& m : tradeoff.measurements) rows.push_back({m.setting.name, m.setting.what});
   return html::section("What the settings are",
                        "All but the presets are the standard preset with one thing changed. Seconds are wall time of the fit alone, one run each "
-                       "on this machine as busy as it was; calibration and comparison are not counted. Peak memory is the process's during that fit.",
+                       "on this machine as busy as it was (other programs make them longer, and CPU seconds, of all threads, hardly); calibration and comparison are not counted. Peak memory is the process's during that fit.",
                        html::table({"setting", "meaning"}, rows));
 }
 

@@ -106,14 +106,33 @@ std::string grid(const Axes& axes) {
                          0.5 * (kHeight_px - kBottom_px));
 }
 
-std::string front_steps(const Axes& axes, std::vector<Point> points) {
+// From the fastest to the slowest.
+std::vector<Point> front_of(std::vector<Point> points) {
   std::erase_if(points, [](const Point& point) { return !point.front; });
   std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.seconds < b.seconds; });
+  return points;
+}
+
+std::string front_steps(const Axes& axes, const std::vector<Point>& points) {
   if (points.empty()) return "";
   std::string path = formatted("M%.1f %.0f V%.1f", axes.x(points.front().seconds), kTop_px, axes.y(points.front().error));
   for (const Point& point : points) path += formatted(" H%.1f V%.1f", axes.x(point.seconds), axes.y(point.error));
   path += formatted(" H%.0f", kWidth_px - kRight_px);
   return "<path d=\"" + path + "\" fill=\"none\" stroke=\"" + kFrontColour + "\" stroke-width=\"2\" stroke-opacity=\"0.6\"/>\n";
+}
+
+// The strips that the steps cover, for labels to keep out of.
+std::vector<Box> step_boxes(const Axes& axes, const std::vector<Point>& front) {
+  std::vector<Box> boxes;
+  double above = kTop_px;
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    const double x = axes.x(front[i].seconds), y = axes.y(front[i].error);
+    const double next = i + 1 < front.size() ? axes.x(front[i + 1].seconds) : kWidth_px - kRight_px;
+    boxes.push_back({x - 1, above, x + 1, y});
+    boxes.push_back({x, y - 1, next, y + 1});
+    above = y;
+  }
+  return boxes;
 }
 
 Box label_box(double x, double y, std::size_t letters, bool right) {
@@ -123,7 +142,7 @@ Box label_box(double x, double y, std::size_t letters, bool right) {
 
 // Beside the point, on the first side and height that is inside the drawing and free of points and other labels.
 std::string label(const Axes& axes, const Point& point, std::vector<Box>& taken) {
-  for (const double down : {4.0, -10.0, 18.0, -24.0, 32.0, -38.0, 46.0, -52.0, 60.0}) {
+  for (const double down : {4.0, -8.0, 17.0, -22.0, 31.0, -36.0, 45.0, -50.0, 59.0}) {
     for (const bool right : {true, false}) {
       const double x = axes.x(point.seconds) + (right ? 9.0 : -9.0), y = axes.y(point.error) + down;
       const Box box = label_box(x, y, point.name.size(), right);
@@ -153,8 +172,9 @@ std::string tradeoff_plot(const Tradeoff& tradeoff) {
   if (points.empty()) return "";
   const Axes axes = axes_of(points);
   std::string svg = formatted("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" role=\"img\">\n", kWidth_px, kHeight_px);
-  svg += grid(axes) + front_steps(axes, points);
-  std::vector<Box> taken;
+  const std::vector<Point> front = front_of(points);
+  svg += grid(axes) + front_steps(axes, front);
+  std::vector<Box> taken = step_boxes(axes, front);
   for (const Point& point : points) {
     svg += mark(axes, point);
     const double x = axes.x(point.seconds), y = axes.y(point.error);

@@ -48,21 +48,22 @@ std::string measurement_line(const Tradeoff& tradeoff, const TradeoffMeasurement
   const std::string name = formatted("%c %-19s", front ? '*' : ' ', m.setting.name.c_str());
   if (!m.measured()) return name + "not measured: " + m.failure + "\n";
   const auto gain = m.setting.name == kStandardSetting ? std::nullopt : gain_over_standard(tradeoff, m);
-  return name + formatted("%5zu %4zu  %s  %7.4f %7.4f  %8.1f %s", m.fit_views, m.materials, error_cell(m.clipped).c_str(), m.relative.value,
-                          m.square_root.value, m.seconds, memory_cell(m.peak_bytes).c_str()) +
+  return name + formatted("%5zu %4zu  %s  %7.4f %7.4f  %8.1f %7.1f %s", m.fit_views, m.materials, error_cell(m.clipped).c_str(), m.relative.value,
+                          m.square_root.value, m.seconds, m.cpu_seconds, memory_cell(m.peak_bytes).c_str()) +
          gain_cells(gain) + "\n";
 }
 
 std::string tradeoff_text(const Tradeoff& tradeoff) {
   std::string text = formatted("Errors on %zu photographs that no fit saw; %zu more for fitting\n", tradeoff.heldout_views, tradeoff.fit_views);
-  text += "                                 clipped error                                                gain over       gain\n"
-          "  setting            views mat.   +- over views    relative    sqrt   seconds peak MB     standard      per s\n";
+  text += "                                 clipped error                                     CPU           gain over             gain\n"
+          "  setting            views mat.   +- over views    relative    sqrt   seconds seconds peak MB  standard             per s\n";
   const std::vector<bool> front = pareto_front(tradeoff.measurements);
   for (std::size_t i = 0; i < front.size(); ++i) text += measurement_line(tradeoff, tradeoff.measurements[i], front[i]);
   return text +
          "* on the Pareto front: no setting is both faster and better by the clipped error. Gain: clipped error of standard less\n"
          "this one's, +- over the same views. Per second: of a slower setting what a second more buys, of a faster one what a\n"
-         "second saved costs; below 0 one of the two is faster and better; - where times are within 5 %.\n";
+         "second saved costs; below 0 one of the two is faster and better; - where times are within 5 %.\n"
+         "Seconds are wall time: other programs on this machine make them longer, and CPU seconds hardly.\n";
 }
 
 std::string session_name(const fs::path& session) {

@@ -57,6 +57,7 @@ TEST(Tradeoff, MeasuresEachSettingAndSaysWhyNotWhereItCannot) {
   EXPECT_EQ(draft.fit_views, 4u);
   EXPECT_EQ(draft.materials, 1u);
   EXPECT_GT(draft.seconds, 0.0);
+  EXPECT_GT(draft.cpu_seconds, 0.0);
   // No noise and one albedo: what is left is the silhouette, where a pixel's centre misses the mesh, and bilinear sampling.
   EXPECT_LT(draft.clipped.value, 0.05);
   EXPECT_EQ(draft.clipped_by_view.size(), 2u);
