@@ -1,6 +1,9 @@
 #include "processing/model/stage_timer.h"
 
+#include <malloc.h>
 #include <sys/resource.h>
+
+#include <fstream>
 
 namespace lumitexel {
 
@@ -18,6 +21,13 @@ void StageTimer::end() {
   getrusage(RUSAGE_SELF, &usage);
   stages_.back().peak_bytes = static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
   open_ = false;
+}
+
+bool restart_peak_memory() {
+  malloc_trim(0);
+  std::ofstream file("/proc/self/clear_refs");
+  file << "5" << std::flush;  // proc(5): resets the peak resident size, which getrusage reports too
+  return static_cast<bool>(file);
 }
 
 }  // namespace lumitexel

@@ -11,7 +11,7 @@ namespace lumitexel {
 struct StageCost {
   std::string name;
   double seconds = 0;
-  std::int64_t peak_bytes = 0;  // largest resident size of the process so far, when the stage ended
+  std::int64_t peak_bytes = 0;  // largest resident size of the process so far, or since restart_peak_memory()
 };
 
 class StageTimer {
@@ -25,5 +25,9 @@ class StageTimer {
   std::chrono::steady_clock::time_point started_;
   std::vector<StageCost> stages_;
 };
+
+// Lets StageCost::peak_bytes count from here on instead of from the process's start, and gives free memory back first.
+// False where the system does not allow it; then nothing has changed.
+bool restart_peak_memory();
 
 }  // namespace lumitexel

@@ -1,0 +1,106 @@
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "processing/calibration/calibrated_session.h"
+#include "processing/model/tradeoff.h"
+#include "processing/report/tradeoff_page.h"
+#include "rig/console/command.h"
+#include "rig/whole_file.h"
+
+namespace lumitexel {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct TradeoffArguments {
+  std::string session, page;
+  int materials = 4;
+  bool full = false;
+  std::vector<std::string> only;
+};
+
+template <typename... Values>
+std::string formatted(const char* format, Values... values) {
+  char buffer[240];
+  std::snprintf(buffer, sizeof buffer, format, values...);
+  return buffer;
+}
+
+std::string error_cell(const ErrorWithSpread& error) {
+  if (!std::isfinite(error.sigma)) return formatted("%7.4f          ", error.value);
+  return formatted("%7.4f +- %.4f", error.value, error.sigma);
+}
+
+std::string memory_cell(const std::optional<std::int64_t>& bytes) {
+  return bytes ? formatted("%7.0f", static_cast<double>(*bytes) / 1e6) : formatted("%7s", "-");
+}
+
+std::string gain_cells(const std::optional<TradeoffGain>& gain) {
+  if (!gain) return "";
+  const std::string each = std::isfinite(gain->per_second) ? formatted("%+10.2e", gain->per_second) : formatted("%10s", "-");
+  const std::string sigma = std::isfinite(gain->gain.sigma) ? formatted("+- %.4f", gain->gain.sigma) : "         ";
+  return formatted("  %+8.4f %s %s", gain->gain.value, sigma.c_str(), each.c_str());
+}
+
+std::string measurement_line(const Tradeoff& tradeoff, const TradeoffMeasurement& m, bool front) {
+  const std::string name = formatted("%c %-19s", front ? '*' : ' ', m.setting.name.c_str());
+  if (!m.measured()) return name + "not measured: " + m.failure + "\n";
+  const auto gain = m.setting.name == kStandardSetting ? std::nullopt : gain_over_standard(tradeoff, m);
+  return name + formatted("%5zu %4zu  %s  %7.4f %7.4f  %8.1f %7.1f %s", m.fit_views, m.materials, error_cell(m.clipped).c_str(), m.relative.value,
+                          m.square_root.value, m.seconds, m.cpu_seconds, memory_cell(m.peak_bytes).c_str()) +
+         gain_cells(gain) + "\n";
+}
+
+std::string tradeoff_text(const Tradeoff& tradeoff) {
+  std::string text = formatted("Errors on %zu photographs that no fit saw; %zu more for fitting\n", tradeoff.heldout_views, tradeoff.fit_views);
+  text += "                                 clipped error                                     CPU           gain over             gain\n"
+          "  setting            views mat.   +- over views    relative    sqrt   seconds seconds peak MB  standard             per s\n";
+  const std::vector<bool> front = pareto_front(tradeoff.measurements);
+  for (std::size_t i = 0; i < front.size(); ++i) text += measurement_line(tradeoff, tradeoff.measurements[i], front[i]);
+  return text +
+         "* on the Pareto front: no setting is both faster and better by the clipped error. Gain: clipped error of standard less\n"
+         "this one's, +- over the same views. Per second: of a slower setting what a second more buys, of a faster one what a\n"
+         "second saved costs; below 0 one of the two is faster and better; - where times are within 5 %.\n"
+         "Seconds are wall time: other programs on this machine make them longer, and CPU seconds hardly.\n";
+}
+
+std::string session_name(const fs::path& session) {
+  const fs::path whole = fs::absolute(session).lexically_normal();
+  return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
+
+CommandResult tradeoff_command(const TradeoffArguments& arguments, CommandContext& context) {
+  const auto settings = tradeoff_settings(arguments.materials, arguments.full, arguments.only);
+  const SessionStore store = SessionStore::open(arguments.session, OpenMode::ReadOnly);
+  const CalibratedSession session = calibrate_session(store, context.progress);
+  const Tradeoff tradeoff = measure_tradeoff(session, settings, context.progress);
+  const std::string json = tradeoff_json(tradeoff);
+  CommandResult result;
+  result.json = nlohmann::json::parse(json);
+  result.text = tradeoff_text(tradeoff);
+  if (!arguments.page.empty()) {
+    write_whole_file(arguments.page, tradeoff_page(session_name(arguments.session), tradeoff, json));
+    result.text += arguments.page + ": the same as a page with the front drawn\n";
+  }
+  return result;
+}
+
+}  // namespace
+
+void add_tradeoff_command(CLI::App& app, CommandAction& action) {
+  auto arguments = std::make_shared<TradeoffArguments>();
+  CLI::App* command = app.add_subcommand(
+      "tradeoff", "Speed against accuracy on this session: fits it with one setting after another, each judged by held-out photographs");
+  command->add_option("SESSION", arguments->session, "Session to fit, with held-out views")->required();
+  command->add_option("--materials", arguments->materials, "Materials of every fit")->check(CLI::Range(1, 64))->capture_default_str();
+  command->add_flag("--full", arguments->full, "Also the reference preset, which learns on every surface point and takes long");
+  command->add_option("--only", arguments->only, "These settings only, by the names in the table");
+  command->add_option("--page", arguments->page, "HTML file to write, with a drawing of error against seconds");
+  command->callback([arguments, &action] {
+    action = [arguments](CommandContext& context) { return tradeoff_command(*arguments, context); };
+  });
+}
+
+}  // namespace lumitexel

@@ -1,0 +1,18 @@
+// Measurements made up for tests: error by view, seconds.
+#pragma once
+
+#include "processing/model/tradeoff.h"
+
+namespace lumitexel {
+
+inline TradeoffMeasurement made_measurement(const std::string& name, double seconds, const std::vector<double>& errors) {
+  TradeoffMeasurement measurement;
+  measurement.setting.name = name;
+  measurement.seconds = seconds;
+  measurement.clipped_by_view = errors;
+  measurement.clipped = mean_with_spread(errors);
+  measurement.relative = measurement.square_root = measurement.clipped;
+  return measurement;
+}
+
+}  // namespace lumitexel
