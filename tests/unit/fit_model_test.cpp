@@ -49,8 +49,7 @@ TEST(FitModel, ProvenanceSaysWhatWasDone) {
     names.push_back(stage.at("name"));
     EXPECT_GT(stage.at("peak_bytes").get<double>(), 0.0);
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"atlas", "lumitexels", "materials", "projection", "principal functions",
-                                             "model"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"atlas", "lumitexels", "materials", "projection", "model"}));
 }
 
 TEST(FitModel, EveryTexelThatATriangleCanShowHasAMaterial) {
