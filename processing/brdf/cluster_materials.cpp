@@ -1,18 +1,13 @@
 #include "processing/brdf/cluster_materials.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 
-#include "processing/brdf/error_choice.h"
-#include "processing/brdf/merge_materials.h"
-#include "processing/brdf/split_materials.h"
+#include "processing/brdf/material_search.h"
 
 namespace lumitexel {
 namespace {
 
-constexpr int kSearchRounds = 24, kFinalRounds = 4;  // of expectation-maximisation
-constexpr int kMostExtra = 8;  // materials beyond those wanted that splitting may make
+constexpr int kFinalRounds = 4;  // of expectation-maximisation
 
 std::vector<int> most_probable(const Responsibilities& r) {
   std::vector<int> label(r.lumitexels());
@@ -36,20 +31,6 @@ LumitexelList members_of_all(const std::vector<int>& label, const LumitexelList&
   return chosen;
 }
 
-// Each material's lobes, asked for anew: while splitting and merging all had those of the whole.
-void choose_lobes(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels, const Responsibilities& r,
-                  const MaterialFitOptions& options, std::vector<BrdfFit>& fits) {
-  fits.resize(mixture.materials.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, mixture.materials.size(), [&](std::size_t k) {
-    MaterialFitOptions own = options;
-    own.error = mixture.materials[k].error;
-    const auto samples = samples_of(observations, lumitexels, r, k);
-    const MaterialFit fit = fit_material(samples, observations.channels, &mixture.materials[k].brdf, own);
-    mixture.materials[k] = fit.model;
-    fits[k] = fit.fit;
-  });
-}
-
 void set_shares(const Responsibilities& r, Mixture& mixture) {
   std::fill(mixture.share.begin(), mixture.share.end(), 0.0);
   for (std::size_t l = 0; l < r.lumitexels(); ++l) {
@@ -58,39 +39,17 @@ void set_shares(const Responsibilities& r, Mixture& mixture) {
   for (double& share : mixture.share) share = std::max(share, 1e-300);  // its logarithm is taken
 }
 
-// As many materials as wanted, and how they were fitted.
-struct Search {
-  MaterialFitOptions fit;
-  MaterialModel whole;
-  Mixture mixture;
-};
-
-// While materials are told apart they all have a lobe: what a matte whole hides, a part may show.
-Search search_with(bool estimate_error, const Observations& observations, const LumitexelList& selection, const ClusterOptions& options,
-                   int most, const std::function<void(int)>& report) {
-  Search search{options.fit, {}, {}};
-  search.fit.choose_lobes = false;
-  search.fit.most_lobes = std::min(1, options.fit.most_lobes);
-  search.fit.estimate_error = estimate_error;
-  const MaterialFit whole = fit_material(samples_of(observations, selection), observations.channels, nullptr, search.fit);
-  search.whole = whole.model;
-  search.mixture = split_materials(whole, observations, selection, most, search.fit);
-  maximise_expectation(search.mixture, observations, selection, search.fit, kSearchRounds);
-  merge_materials(search.mixture, observations, selection, {options.materials, search.fit}, report);
-  return search;
-}
-
-Search search_for_materials(const Observations& observations, const LumitexelList& selection, const ClusterOptions& options, int most,
-                            const std::function<void(int)>& report) {
-  if (options.errors != ErrorSource::Auto) {
-    return search_with(options.errors == ErrorSource::Estimated, observations, selection, options, most, report);
-  }
-  Search given = search_with(false, observations, selection, options, most, report);
-  Search estimated = search_with(true, observations, selection, options, most, report);
-  return estimated_errors_serve(given.mixture, estimated.mixture, observations, selection) ? estimated : given;
-}
-
 }  // namespace
+
+const char* to_string(ErrorSource source) {
+  switch (source) {
+    case ErrorSource::Given: return "given";
+    case ErrorSource::Labels: return "labels";
+    case ErrorSource::Estimated: return "estimated";
+    case ErrorSource::Auto: break;
+  }
+  return "auto";
+}
 
 void set_labels(const std::vector<int>& label, const LumitexelList& all, std::size_t lumitexels, Clustering& clustering) {
   for (const int material : label) ++clustering.materials[static_cast<std::size_t>(material)].members;
@@ -103,17 +62,16 @@ void set_labels(const std::vector<int>& label, const LumitexelList& all, std::si
 Clustering cluster_materials(const Observations& observations, const LumitexelList& selection, const ClusterOptions& options,
                              const std::function<void(int)>& report) {
   Clustering result;
-  const int wanted = options.materials > 0 ? options.materials : kMostMaterials;
-  const int most = wanted == 1 ? 1 : std::min(2 * wanted, wanted + kMostExtra);
   report(0);
 
-  Search search = search_for_materials(observations, selection, options, most, report);
+  MaterialSearch search = search_for_materials(observations, selection, options, report);
   Mixture& mixture = search.mixture;
   Responsibilities r = responsibilities(mixture, observations, selection);
 
   MaterialFitOptions settled = options.fit;
   settled.estimate_error = search.fit.estimate_error;
-  result.estimated_errors = settled.estimate_error;
+  settled.mean_fit = search.fit.mean_fit;
+  result.errors = search.errors;
   result.fit = settled;
   std::vector<BrdfFit> fits;
   choose_lobes(mixture, observations, selection, r, settled, fits);

@@ -10,9 +10,11 @@
 
 namespace lumitexel {
 
-// Whose error model the materials are fitted with (MaterialFitOptions::estimate_error). Auto: estimated, unless that predicts left-out
-// lumitexels worse (error_choice.h).
-enum class ErrorSource { Given, Estimated, Auto };
+// Whose error model the materials are fitted with. Given: MaterialFitOptions::error, and BRDFs that are the best mean prediction.
+// Estimated: from each material's own residuals, outlying samples counting less. Labels: estimated for telling materials apart, while BRDFs
+// are mean predictions under the given one. Auto: whichever predicts left-out samples best (error_choice.h).
+enum class ErrorSource { Given, Labels, Estimated, Auto };
+const char* to_string(ErrorSource source);  // "given", "labels", "estimated", "auto"
 
 struct ClusterOptions {
   ErrorSource errors = ErrorSource::Auto;
@@ -31,7 +33,7 @@ struct FittedMaterial {
 struct Clustering {
   MaterialModel single;                   // one BRDF for everything, where the splitting begins
   std::vector<FittedMaterial> materials;  // fewer than asked for if the samples do not tell so many apart
-  bool estimated_errors = false;          // which source it was
+  ErrorSource errors = ErrorSource::Given;  // which source it was
   MaterialFitOptions fit;                 // as every material was fitted at the end
   std::vector<int> label;                 // material of every lumitexel; those without samples get the largest material
 };

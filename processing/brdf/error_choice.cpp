@@ -3,15 +3,39 @@
 #include "processing/brdf/left_out_error.h"
 
 namespace lumitexel {
+namespace {
 
-bool estimated_errors_serve(const Mixture& given, const Mixture& estimated, const Observations& observations,
-                            const LumitexelList& lumitexels) {
-  constexpr double kStandardErrors = 2.0;
+constexpr double kStandardErrors = 2.0;
+
+std::vector<double> values(const std::vector<SquaredError>& errors, double SquaredError::*kind) {
+  std::vector<double> all;
+  for (const SquaredError& error : errors) all.push_back(error.*kind);
+  return all;
+}
+
+bool predicts_better(const std::vector<SquaredError>& later, const std::vector<SquaredError>& earlier) {
+  const SquaredError scale = total_error(earlier);
+  if (excess_in_standard_errors(relative_errors(later, scale), relative_errors(earlier, scale)) >= -kStandardErrors) return false;
+  for (const auto kind : {&SquaredError::clipped, &SquaredError::root}) {
+    if (excess_in_standard_errors(values(later, kind), values(earlier, kind)) > kStandardErrors) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::size_t best_predictor(const std::vector<const Mixture*>& mixtures, const Observations& observations,
+                           const LumitexelList& lumitexels) {
   const double clip = clip_level(observations, lumitexels);
-  const auto of_given = left_out_errors(given, observations, lumitexels, clip);
-  const auto of_estimated = left_out_errors(estimated, observations, lumitexels, clip);
-  const SquaredError total = total_error(of_given);
-  return excess_in_standard_errors(relative_errors(of_estimated, total), relative_errors(of_given, total)) < -kStandardErrors;
+  std::size_t best = 0;
+  std::vector<SquaredError> least;
+  for (std::size_t i = 0; i < mixtures.size(); ++i) {
+    std::vector<SquaredError> errors = left_out_errors(*mixtures[i], observations, lumitexels, clip);
+    if (i > 0 && !predicts_better(errors, least)) continue;
+    best = i;
+    least = std::move(errors);
+  }
+  return best;
 }
 
 }  // namespace lumitexel

@@ -35,10 +35,16 @@ MaterialFit refined(const MaterialModel& start, FitSamples samples, const Materi
   return result;
 }
 
+// What the BRDF is to explain the samples by: where it is a mean prediction, the likelihood of outlier-tolerant errors would prefer the
+// one that leaves highlights out.
+double lack_of_fit(const MaterialFit& fit, FitSamples samples, const MaterialFitOptions& options) {
+  return misfit(fit.model.brdf, samples, options.mean_fit.value_or(fit.model.error));
+}
+
 // Both with the same independence, which the smaller model would see too low: what it cannot explain errs together.
 void set_criterion(MaterialFit& candidate, FitSamples samples, double independence, const MaterialFitOptions& options) {
   const int parameters = parameters_of(candidate.model.brdf, refit_options(candidate.model, options)).size();
-  candidate.criterion = independence * misfit(candidate.model.brdf, samples, candidate.model.error) +
+  candidate.criterion = independence * lack_of_fit(candidate, samples, options) +
                         parameters * std::log(effective_samples(samples, independence));
 }
 
@@ -62,9 +68,9 @@ MaterialFit with_lobe(const MaterialFit& before, FitSamples samples, const Mater
   MaterialFit best;
   double least = std::numeric_limits<double>::infinity();
   for (const LobeBounds& bounds : kinds_of_lobe(before.model.brdf, options)) {
-    const Brdf start = with_best_lobe(before.model.brdf, samples, bounds, before.model.error);
+    const Brdf start = with_best_lobe(before.model.brdf, samples, bounds, options.mean_fit.value_or(before.model.error));
     const MaterialFit candidate = refined({start, before.model.error}, samples, options);
-    const double value = misfit(candidate.model.brdf, samples, candidate.model.error);
+    const double value = lack_of_fit(candidate, samples, options);
     if (value < least || best.model.brdf.lobes.empty()) best = candidate, least = value;
   }
   return best;
@@ -84,8 +90,8 @@ bool prefers(MaterialFit& smaller, MaterialFit& larger, FitSamples samples, cons
 BrdfFitOptions refit_options(const MaterialModel& model, const MaterialFitOptions& options) {
   BrdfFitOptions fit;
   fit.shared_shape = options.shared_shape;
-  fit.error = model.error;
-  fit.robust = options.estimate_error;
+  fit.error = options.mean_fit.value_or(model.error);
+  fit.robust = options.estimate_error && !options.mean_fit;
   for (const auto& lobe : model.brdf.lobes) fit.bounds.push_back(bounds_at(lobe[0], options));
   return fit;
 }

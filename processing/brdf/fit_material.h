@@ -1,6 +1,8 @@
 // A material learnt from samples: its BRDF and its error model together, with as many lobes as the samples ask for.
 #pragma once
 
+#include <optional>
+
 #include "processing/brdf/fit_brdf.h"
 
 namespace lumitexel {
@@ -14,6 +16,8 @@ struct MaterialFitOptions {
   // efficient, and right where what is left is noise. False: `error` is the last word and every sample counts, so that the fit is the
   // best mean prediction even where residuals have causes of their own, such as normals that the coarse mesh does not have.
   bool estimate_error = true;
+  // If set, the BRDF is the best mean prediction under this model, while the error model, estimated, tells materials apart.
+  std::optional<ErrorModel> mean_fit;
   bool any_aim = false;        // lobes may point anywhere (the paper); else near the mirror direction or back at the light
   ErrorModel error;            // where the estimate starts
 };

@@ -26,6 +26,7 @@ struct Observations {
   int channels = 0;
   std::vector<Observation> samples;
   std::vector<std::size_t> first{0};  // samples of lumitexel i: first[i] … first[i + 1]
+  std::vector<std::uint16_t> view;    // of each sample, an index into the session's views; empty where nobody asks for it
   RejectedSamples rejected;
 
   std::size_t lumitexels() const { return first.size() - 1; }

@@ -28,12 +28,17 @@ RejectedSamples reject_unusable(Observations& observations) {
       const Observation& sample = observations.samples[s];
       if (!all_finite(sample, channels)) ++rejected.not_finite;
       else if (sample.geometry.cos_i <= 0.0 || sample.geometry.cos_o <= 0.0) ++rejected.below_surface;
-      else observations.samples[kept++] = sample;
+      else {
+        observations.samples[kept] = sample;
+        if (!observations.view.empty()) observations.view[kept] = observations.view[s];
+        ++kept;
+      }
     }
     begin = end;
     observations.first[i + 1] = kept;
   }
   observations.samples.resize(kept);
+  if (!observations.view.empty()) observations.view.resize(kept);
   return rejected;
 }
 

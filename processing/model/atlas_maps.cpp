@@ -17,7 +17,10 @@ constexpr float kNoMaterialOnDisk = 65535.0f;
 constexpr double kUnitTolerance = 1e-3;  // a unit normal in single, or even half, precision passes
 const std::vector<std::string> kWeightPlanes{"R", "G", "B", "A"};  // names that every reader shows
 
-std::string weights_file(int file) { return "weights_" + std::to_string(file) + ".exr"; }
+constexpr const char* kWeights = "weights_";
+constexpr const char* kProjectionWeights = "projection_weights_";
+
+std::string weights_file(const char* prefix, int file) { return prefix + std::to_string(file) + ".exr"; }
 int weight_files(int basis_size) { return (basis_size + kPlanesPerFile - 1) / kPlanesPerFile; }
 
 std::size_t texels(const Model& model) {
@@ -33,21 +36,19 @@ void write_cluster_map(const fs::path& path, const Model& model) {
 }
 
 // Files are always four planes wide; planes past the last weight are zero.
-void write_weights(const fs::path& directory, const Model& model) {
-  for (int file = 0; file < weight_files(model.weights.channels); ++file) {
-    ExrImage exr{model.width, model.height, {}};
+void write_weights(const fs::path& directory, const char* prefix, const Image& weights) {
+  const std::size_t count = static_cast<std::size_t>(weights.width) * static_cast<std::size_t>(weights.height);
+  for (int file = 0; file < weight_files(weights.channels); ++file) {
+    ExrImage exr{weights.width, weights.height, {}};
     for (int plane = 0; plane < kPlanesPerFile; ++plane) {
-      std::vector<float> data(texels(model), 0.0f);
+      std::vector<float> data(count, 0.0f);
       const int k = file * kPlanesPerFile + plane;
-      if (k < model.weights.channels) {
-        for (std::size_t t = 0; t < data.size(); ++t) {
-          data[t] =
-              model.weights.data[t * static_cast<std::size_t>(model.weights.channels) + static_cast<std::size_t>(k)];
-        }
+      for (std::size_t t = 0; k < weights.channels && t < count; ++t) {
+        data[t] = weights.data[t * static_cast<std::size_t>(weights.channels) + static_cast<std::size_t>(k)];
       }
       exr.planes.push_back({kWeightPlanes[static_cast<std::size_t>(plane)], ExrPixel::Float, std::move(data)});
     }
-    write_exr(directory / weights_file(file), exr);
+    write_exr(directory / weights_file(prefix, file), exr);
   }
 }
 
@@ -97,18 +98,18 @@ void read_cluster_map(const fs::path& path, Model& model) {
   }
 }
 
-void read_weights(const fs::path& directory, int basis_size, Model& model) {
-  model.weights = Image(model.width, model.height, basis_size);
+Image read_weights(const fs::path& directory, const char* prefix, int basis_size, const Model& model) {
+  Image weights(model.width, model.height, basis_size);
   for (int file = 0; file < weight_files(basis_size); ++file) {
-    const Image four = read_map(directory / weights_file(file), model, kWeightPlanes, 0.0f);
+    const Image four = read_map(directory / weights_file(prefix, file), model, kWeightPlanes, 0.0f);
     const int planes = std::min(kPlanesPerFile, basis_size - file * kPlanesPerFile);
     for (std::size_t t = 0; t < texels(model); ++t) {
       const float* from = &four.data[t * kPlanesPerFile];
       std::copy(from, from + planes,
-                &model.weights
-                     .data[t * static_cast<std::size_t>(basis_size) + static_cast<std::size_t>(file * kPlanesPerFile)]);
+                &weights.data[t * static_cast<std::size_t>(basis_size) + static_cast<std::size_t>(file * kPlanesPerFile)]);
     }
   }
+  return weights;
 }
 
 void read_normals(const fs::path& path, Model& model) {
@@ -126,24 +127,29 @@ void read_normals(const fs::path& path, Model& model) {
 
 }  // namespace
 
-std::vector<AtlasMap> atlas_maps(int basis_size) {
+std::vector<AtlasMap> atlas_maps(int basis_size, bool principal_functions) {
   std::vector<AtlasMap> maps{
       {"cluster.exr", {"Y"}}, {"normal.exr", {"R", "G", "B"}}, {"uncertainty.exr", {"Y"}}, {"samples.exr", {"Y"}}};
-  for (int file = 0; file < weight_files(basis_size); ++file) maps.push_back({weights_file(file), kWeightPlanes});
+  for (const char* prefix : {kWeights, kProjectionWeights}) {
+    if (prefix == kProjectionWeights && !principal_functions) continue;
+    for (int file = 0; file < weight_files(basis_size); ++file) maps.push_back({weights_file(prefix, file), kWeightPlanes});
+  }
   return maps;
 }
 
 void write_atlas_maps(const fs::path& directory, const Model& model) {
   write_cluster_map(directory / "cluster.exr", model);
-  write_weights(directory, model);
+  write_weights(directory, kWeights, model.weights);
+  if (has_principal_functions(model)) write_weights(directory, kProjectionWeights, model.projection_weights);
   write_exr_colour(directory / "normal.exr", model.normal);
   write_exr_colour(directory / "uncertainty.exr", model.uncertainty);
   write_exr_colour(directory / "samples.exr", model.samples);
 }
 
-void read_atlas_maps(const fs::path& directory, int basis_size, Model& model) {
+void read_atlas_maps(const fs::path& directory, int basis_size, bool principal_functions, Model& model) {
   read_cluster_map(directory / "cluster.exr", model);
-  read_weights(directory, basis_size, model);
+  model.weights = read_weights(directory, kWeights, basis_size, model);
+  if (principal_functions) model.projection_weights = read_weights(directory, kProjectionWeights, basis_size, model);
   read_normals(directory / "normal.exr", model);
   model.uncertainty = read_map(directory / "uncertainty.exr", model, {"Y"}, 0.0f);
   model.samples = read_map(directory / "samples.exr", model, {"Y"}, 0.0f);

@@ -2,6 +2,7 @@
 //
 //   cluster.exr       Y, uint: the texel's material, 65535 where there is none
 //   weights_0.exr, …  R,G,B,A: weights 4k to 4k+3 of the basis of the texel's material; zero past the last
+//   projection_weights_0.exr, …  the same before principal function analysis, if that ran
 //   normal.exr        R,G,B: unit, in world; zero where there is none
 //   uncertainty.exr   Y: one sigma of the texel's reflectance, relative
 //   samples.exr       Y: how many samples the texel was fitted to
@@ -21,12 +22,12 @@ struct AtlasMap {
 };
 
 // What a model with this largest basis consists of.
-std::vector<AtlasMap> atlas_maps(int basis_size);
+std::vector<AtlasMap> atlas_maps(int basis_size, bool principal_functions);
 
 void write_atlas_maps(const std::filesystem::path& directory, const Model& model);  // throws Error
 
 // Fills the maps of `model`, whose size and materials are known. Throws BadInput naming the file and the texel for a
 // map that is missing, of another size, not finite, negative (all but normals), or a material or normal that cannot be.
-void read_atlas_maps(const std::filesystem::path& directory, int basis_size, Model& model);
+void read_atlas_maps(const std::filesystem::path& directory, int basis_size, bool principal_functions, Model& model);
 
 }  // namespace lumitexel

@@ -54,6 +54,12 @@ Json to_json(const Brdf& brdf) {
   return {{"family", to_string(brdf.family)}, {"diffuse", diffuse}, {"lobes", lobes}};
 }
 
+Json to_json(const std::vector<Brdf>& brdfs) {
+  Json list = Json::array();
+  for (const Brdf& brdf : brdfs) list.push_back(to_json(brdf));
+  return list;
+}
+
 // A place in the document that knows its own name, for error messages.
 class Field {
  public:
@@ -144,14 +150,20 @@ Brdf brdf_from(const Field& field, int channels) {
   return brdf;
 }
 
+std::vector<Brdf> brdfs_from(const Field& field, int channels) {
+  std::vector<Brdf> brdfs;
+  for (const Field& entry : field.elements()) brdfs.push_back(brdf_from(entry, channels));
+  return brdfs;
+}
+
 }  // namespace
 
 std::string encode_basis(const Model& model) {
   Json materials = Json::array();
   for (const ModelMaterial& material : model.materials) {
-    Json basis = Json::array();
-    for (const Brdf& brdf : material.basis) basis.push_back(to_json(brdf));
-    materials.push_back({{"brdf", to_json(material.brdf)}, {"basis", basis}});
+    Json entry = {{"brdf", to_json(material.brdf)}, {"basis", to_json(material.basis)}};
+    if (!material.projection_basis.empty()) entry["projection_basis"] = to_json(material.projection_basis);
+    materials.push_back(entry);
   }
   const Json document = {
       {"channels", colour_channel_names(model.channels)}, {"single", to_json(model.single)}, {"materials", materials}};
@@ -166,8 +178,8 @@ BasisTable parse_basis(const std::string& text, int channels, const std::string&
   BasisTable table;
   table.single = brdf_from(root["single"], channels);
   for (const Field& entry : root["materials"].elements()) {
-    ModelMaterial material{brdf_from(entry["brdf"], channels), {}};
-    for (const Field& brdf : entry["basis"].elements()) material.basis.push_back(brdf_from(brdf, channels));
+    ModelMaterial material{brdf_from(entry["brdf"], channels), brdfs_from(entry["basis"], channels), {}};
+    if (entry.has("projection_basis")) material.projection_basis = brdfs_from(entry["projection_basis"], channels);
     table.materials.push_back(std::move(material));
   }
   return table;

@@ -49,7 +49,8 @@ ErrorByStage errors(const SumsByStage& sums, FitStage last) {
 
 FitStage last_stage(const Model& model) {
   if (model.materials.empty()) return FitStage::Single;
-  return model.weights.channels > 0 ? FitStage::Projection : FitStage::Cluster;
+  if (model.weights.channels == 0) return FitStage::Cluster;
+  return has_principal_functions(model) ? FitStage::Pfa : FitStage::Projection;
 }
 
 RadianceImage read_photograph(const View& view, int channels) {

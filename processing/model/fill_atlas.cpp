@@ -20,8 +20,10 @@ std::vector<std::int16_t> material_map(const Atlas& atlas, const LumitexelSet& l
 
 void copy_texel(Model& model, std::size_t to, std::size_t from) {
   model.material[to] = model.material[from];
-  const auto planes = static_cast<std::size_t>(model.weights.channels);
-  std::copy_n(&model.weights.data[from * planes], planes, &model.weights.data[to * planes]);
+  for (Image* weights : {&model.weights, &model.projection_weights}) {
+    const auto planes = static_cast<std::size_t>(weights->channels);
+    if (planes > 0) std::copy_n(&weights->data[from * planes], planes, &weights->data[to * planes]);
+  }
   model.uncertainty.data[to] = 1.0f;  // borrowed, so nothing is known about this very texel
 }
 
@@ -61,14 +63,16 @@ int most_common(const std::vector<std::int16_t>& map, std::size_t materials) {
 void fill_unseen(Model& model) {
   const std::size_t texel = Atlas::kUnseenTexel;
   model.material[texel] = static_cast<std::int16_t>(most_common(model.material, model.materials.size()));
-  model.weights.data[texel * static_cast<std::size_t>(model.weights.channels)] = 1.0f;
+  for (Image* weights : {&model.weights, &model.projection_weights}) {
+    if (weights->channels > 0) weights->data[texel * static_cast<std::size_t>(weights->channels)] = 1.0f;
+  }
   model.uncertainty.data[texel] = 1.0f;
 }
 
 }  // namespace
 
 void fill_atlas(const Atlas& atlas, const LumitexelSet& lumitexels, const std::vector<int>& label,
-                const std::vector<TexelWeights>& weights, Model& model) {
+                const std::vector<TexelWeights>& weights, const std::vector<TexelWeights>& projection, Model& model) {
   std::size_t largest_basis = 1;
   for (const ModelMaterial& material : model.materials) largest_basis = std::max(largest_basis, material.basis.size());
   model.width = atlas.width;
@@ -77,6 +81,7 @@ void fill_atlas(const Atlas& atlas, const LumitexelSet& lumitexels, const std::v
   model.material.assign(static_cast<std::size_t>(atlas.width) * static_cast<std::size_t>(atlas.height),
                         Model::kNoMaterial);
   model.weights = Image(atlas.width, atlas.height, static_cast<int>(largest_basis));
+  if (!projection.empty()) model.projection_weights = model.weights;
   model.normal = Image(atlas.width, atlas.height, 3);
   model.uncertainty = Image(atlas.width, atlas.height, 1);
   model.samples = Image(atlas.width, atlas.height, 1);
@@ -93,6 +98,9 @@ void fill_atlas(const Atlas& atlas, const LumitexelSet& lumitexels, const std::v
       if (count == 0) continue;
       model.material[texel] = static_cast<std::int16_t>(label[i]);
       std::copy(weights[i].weight.begin(), weights[i].weight.end(), &model.weights.data[texel * largest_basis]);
+      if (!projection.empty()) {
+        std::copy(projection[i].weight.begin(), projection[i].weight.end(), &model.projection_weights.data[texel * largest_basis]);
+      }
       model.uncertainty.data[texel] = weights[i].relative_sigma;
       filled.push_back(texel);
     }

@@ -134,8 +134,20 @@ void set_materials(const Clustering& clustering, const Atlas& atlas, const Lumit
   for (const FittedMaterial& material : clustering.materials) brdfs.push_back(material.model.brdf);
   const auto counts = neighbour_counts(atlas, lumitexels, clustering.label, brdfs.size());
   const auto bases = material_bases(brdfs, counts, observations);
-  for (std::size_t j = 0; j < brdfs.size(); ++j) model.materials.push_back({brdfs[j], bases[j]});
+  for (std::size_t j = 0; j < brdfs.size(); ++j) model.materials.push_back({brdfs[j], bases[j], {}});
   model.single = clustering.single.brdf;
+}
+
+std::vector<std::string> names_of(const std::vector<View>& views) {
+  std::vector<std::string> names;
+  for (const View& view : views) names.push_back(view.name);
+  return names;
+}
+
+std::vector<std::uint32_t> texels_of(const LumitexelSet& lumitexels) {
+  std::vector<std::uint32_t> texels;
+  for (const LumitexelTile& tile : lumitexels.tiles) texels.insert(texels.end(), tile.texel.begin(), tile.texel.end());
+  return texels;
 }
 
 }  // namespace
@@ -166,24 +178,30 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
   const ErrorModel error = error_model(observations, options);
   summary.error = error;
   const Clustering clustering = learn_materials(observations, options, error, progress);
-  summary.estimated_errors = clustering.estimated_errors;
+  summary.errors = clustering.errors;
   set_materials(clustering, atlas, gathered.set, observations, model);
 
   timer.begin("projection");
   auto weights = project_all(observations, clustering, model, options, summary, progress);
+  summary.projection = stage_error(model, FitStage::Projection, observations, clustering.label, weights);
+  std::vector<TexelWeights> projection;
   if (options.principal_functions) {
     timer.begin("principal functions");
+    for (ModelMaterial& material : model.materials) material.projection_basis = material.basis;
     move_bases(observations, clustering, options, summary, model, progress);
     summary.prior.clear();
     summary.texels_by_material.clear();
+    projection = std::move(weights);
     weights = project_all(observations, clustering, model, options, summary, progress);
+    summary.pfa = stage_error(model, FitStage::Pfa, observations, clustering.label, weights);
   }
 
   timer.begin("model");
   summary.single = stage_error(model, FitStage::Single, observations, clustering.label, weights);
   summary.cluster = stage_error(model, FitStage::Cluster, observations, clustering.label, weights);
-  summary.projection = stage_error(model, FitStage::Projection, observations, clustering.label, weights);
-  fill_atlas(atlas, gathered.set, clustering.label, weights, model);
+  fill_atlas(atlas, gathered.set, clustering.label, weights, projection, model);
+  summary.outliers = find_outliers(model, observations, clustering, weights, session.views.size());
+  model.outliers_csv = outliers_csv(summary.outliers, names_of(session.views), texels_of(gathered.set), atlas.width);
   timer.end();
   summary.stages = timer.stages();
   model.provenance_json = provenance_json(session, options, summary);

@@ -1,11 +1,13 @@
 // The whole chain of processing, from a calibrated session to a model.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "processing/calibration/calibrated_session.h"
 #include "processing/model/fit_options.h"
 #include "processing/model/model.h"
+#include "processing/model/outliers.h"
 #include "processing/model/stage_errors.h"
 #include "processing/model/stage_timer.h"
 #include "processing/surface/lumitexel.h"
@@ -18,10 +20,12 @@ struct FitSummary {
   RejectionCounts rejected;
   RejectedSamples unusable;          // gathered, but not finite or below the surface
   ErrorModel error;                  // that the fit started from, or was given
-  bool estimated_errors = false;     // whether materials' own error models took its place
+  ErrorSource errors = ErrorSource::Given;  // whose error models the materials have, never Auto
   std::vector<std::size_t> texels_by_material;
   std::vector<PriorChoice> prior;    // per material
   StageError single, cluster, projection;
+  std::optional<StageError> pfa;     // if principal functions were asked for
+  Outliers outliers;                 // under the finished model
   std::vector<StageCost> stages;
 };
 

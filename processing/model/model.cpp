@@ -9,6 +9,7 @@ const char* to_string(FitStage stage) {
     case FitStage::Single: return "single";
     case FitStage::Cluster: return "cluster";
     case FitStage::Projection: return "projection";
+    case FitStage::Pfa: return "pfa";
   }
   return "unknown";
 }
@@ -17,7 +18,7 @@ FitStage fit_stage_from_string(const std::string& name) {
   for (const FitStage stage : kFitStages) {
     if (name == to_string(stage)) return stage;
   }
-  throw BadInput("stage", "'" + name + "'", "single, cluster or projection");
+  throw BadInput("stage", "'" + name + "'", "single, cluster, projection or pfa");
 }
 
 double evaluate_texel(const Model& model, FitStage stage, int x, int y, int c, const LobeGeometry& geometry) {
@@ -27,10 +28,13 @@ double evaluate_texel(const Model& model, FitStage stage, int x, int y, int c, c
   if (stage == FitStage::Single) return evaluate(model.single, c, geometry);
   const ModelMaterial& chosen = model.materials[static_cast<std::size_t>(material)];
   if (stage == FitStage::Cluster) return evaluate(chosen.brdf, c, geometry);
+  const bool before = stage == FitStage::Projection && has_principal_functions(model);
+  const std::vector<Brdf>& basis = before ? chosen.projection_basis : chosen.basis;
+  const Image& weights = before ? model.projection_weights : model.weights;
   double value = 0.0;
-  for (std::size_t k = 0; k < chosen.basis.size(); ++k) {
-    const double weight = model.weights.at(x, y, static_cast<int>(k));
-    if (weight > 0.0) value += weight * evaluate(chosen.basis[k], c, geometry);
+  for (std::size_t k = 0; k < basis.size(); ++k) {
+    const double weight = weights.at(x, y, static_cast<int>(k));
+    if (weight > 0.0) value += weight * evaluate(basis[k], c, geometry);
   }
   return value;
 }

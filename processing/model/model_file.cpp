@@ -28,13 +28,14 @@ Json model_json(const Model& model) {
   const Json provenance = Json::parse(model.provenance_json, nullptr, false);
   if (!provenance.is_object()) throw Error("model: its provenance is not a JSON object");
   Json maps = Json::object();
-  for (const AtlasMap& map : atlas_maps(model.weights.channels)) maps[map.file] = map.channels;
+  for (const AtlasMap& map : atlas_maps(model.weights.channels, has_principal_functions(model))) maps[map.file] = map.channels;
   return {{"format", kFormat},
           {"version", kVersion},
           {"channels", colour_channel_names(model.channels)},
           {"atlas", {{"width", model.width}, {"height", model.height}}},
           {"materials", model.materials.size()},
           {"basis_size", model.weights.channels},
+          {"principal_functions", has_principal_functions(model)},
           {"maps", maps},
           {"provenance", provenance}};
 }
@@ -48,7 +49,8 @@ void require_consistent(const Model& model) {
   for (const ModelMaterial& material : model.materials) basis_size = std::max(basis_size, material.basis.size());
   const std::size_t texels = static_cast<std::size_t>(model.width) * static_cast<std::size_t>(model.height);
   if (model.material.size() != texels || model.mesh.texcoords.size() != model.mesh.positions.size() ||
-      !fits(model.weights, static_cast<int>(basis_size)) || !fits(model.normal, 3) || !fits(model.uncertainty, 1) ||
+      !fits(model.weights, static_cast<int>(basis_size)) ||
+      (has_principal_functions(model) && !fits(model.projection_weights, static_cast<int>(basis_size))) || !fits(model.normal, 3) || !fits(model.uncertainty, 1) ||
       !fits(model.samples, 1)) {
     throw Error("model: maps, mesh and basis do not fit together");
   }
@@ -58,6 +60,7 @@ void write_files(const fs::path& directory, const Model& model) {
   write_whole_file(directory / "basis.json", encode_basis(model));
   write_atlas_maps(directory, model);
   write_ply(directory / "mesh.ply", model.mesh);
+  if (!model.outliers_csv.empty()) write_whole_file(directory / "outliers.csv", model.outliers_csv);
   write_whole_file(directory / "model.json", model_json(model).dump(1) + "\n");
 }
 
@@ -105,6 +108,7 @@ constexpr ProvenanceType kProvenanceTypes[] = {
 struct ModelHeader {
   Model model;  // channels, width, height, provenance
   int materials = 0, basis_size = 0;
+  bool principal_functions = false;
 };
 
 int int_field(const Json& parent, const char* key, int minimum, int maximum, const std::string& where) {
@@ -134,6 +138,9 @@ ModelHeader parse_header(const std::string& text, const std::string& where) {
   header.model.height = int_field(atlas, "height", 1, kLargestAtlas, where + ": atlas");
   header.materials = int_field(document, "materials", 0, std::numeric_limits<std::int16_t>::max(), where);
   header.basis_size = int_field(document, "basis_size", 0, 1000, where);
+  const Json principal = document.value("principal_functions", Json(false));
+  if (!principal.is_boolean()) throw BadInput(where + ": principal_functions", principal.dump(), "true or false");
+  header.principal_functions = principal.get<bool>();
   const Json provenance = document.value("provenance", Json());
   if (!provenance.is_object()) throw BadInput(where + ": provenance", provenance.dump(), "an object");
   for (const auto& [key, is_right, expected] : kProvenanceTypes) {
@@ -148,7 +155,13 @@ ModelHeader parse_header(const std::string& text, const std::string& where) {
 void read_basis(const fs::path& path, const ModelHeader& header, Model& model) {
   BasisTable table = parse_basis(read_whole_file(path), model.channels, path.string());
   std::size_t basis_size = 0;
-  for (const ModelMaterial& material : table.materials) basis_size = std::max(basis_size, material.basis.size());
+  for (const ModelMaterial& material : table.materials) {
+    basis_size = std::max(basis_size, material.basis.size());
+    const std::size_t before = header.principal_functions ? material.basis.size() : 0;
+    if (material.projection_basis.size() == before) continue;
+    throw BadInput(path.string() + ".materials", std::to_string(material.projection_basis.size()) + " in a projection_basis",
+                   std::to_string(before) + " as model.json says");
+  }
   if (table.materials.size() != static_cast<std::size_t>(header.materials)) {
     throw BadInput(path.string() + ".materials", std::to_string(table.materials.size()) + " entries",
                    std::to_string(header.materials) + " as model.json says");
@@ -195,8 +208,9 @@ Model read_model(const fs::path& directory) {
   ModelHeader header = parse_header(read_whole_file(description), description.string());
   Model model = std::move(header.model);
   read_basis(directory / "basis.json", header, model);
-  read_atlas_maps(directory, header.basis_size, model);
+  read_atlas_maps(directory, header.basis_size, header.principal_functions, model);
   model.mesh = read_mesh(directory / "mesh.ply");
+  if (fs::exists(directory / "outliers.csv")) model.outliers_csv = read_whole_file(directory / "outliers.csv");
   if (model.mesh.texcoords.size() != model.mesh.positions.size()) {
     throw BadInput((directory / "mesh.ply").string(), "no texture coordinates", "s and t at every vertex");
   }

@@ -8,6 +8,7 @@ Observations observe(const CalibratedSession& session, const LumitexelSet& lumit
   Observations result;
   result.channels = lumitexels.channels;
   result.samples.reserve(lumitexels.samples());
+  result.view.reserve(lumitexels.samples());
   const auto channels = static_cast<std::size_t>(lumitexels.channels);
   std::vector<Eigen::Vector3d> eyes;
   for (const View& view : session.views) eyes.push_back(view.camera_in_world());
@@ -23,6 +24,7 @@ Observations observe(const CalibratedSession& session, const LumitexelSet& lumit
           observation.variance[c] = tile.variance[s * channels + c];
         }
         result.samples.push_back(observation);
+        result.view.push_back(tile.view[s]);
       }
       result.first.push_back(result.samples.size());
     }

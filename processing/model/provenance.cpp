@@ -37,6 +37,25 @@ json prior_json(const std::vector<PriorChoice>& prior) {
   return list;
 }
 
+json counts_json(const CountByReason& count) {
+  json object = json::object();
+  for (const OutlierReason reason : kOutlierReasons) object[to_string(reason)] = count[static_cast<std::size_t>(reason)];
+  return object;
+}
+
+json outliers_json(const Outliers& outliers, const CalibratedSession& session) {
+  json by_view = json::object(), by_material = json::array();
+  for (std::size_t v = 0; v < outliers.by_view.size(); ++v) {
+    if (!session.views[v].heldout) by_view[session.views[v].name] = counts_json(outliers.by_view[v]);
+  }
+  for (const CountByReason& count : outliers.by_material) by_material.push_back(counts_json(count));
+  return {{"beyond_scales", kOutlierScales},
+          {"samples", outliers.samples},
+          {"count", counts_json(outliers.count)},
+          {"by_view", by_view},
+          {"by_material", by_material}};
+}
+
 }  // namespace
 
 std::string provenance_json(const CalibratedSession& session, const FitOptions& options, const FitSummary& summary) {
@@ -53,7 +72,7 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
                        {"final_lumitexels", options.final_lumitexels},
                        {"shared_lobe_shape", options.shared_lobe_shape},
                        {"plain_projection", options.plain_projection},
-                       {"estimated_errors", summary.estimated_errors},
+                       {"errors", to_string(summary.errors)},
                        {"relative_error", summary.error.relative},
                        {"error_floor", summary.error.floor}};
   object["materials"] = summary.texels_by_material.size();
@@ -72,6 +91,12 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
   object["rms_by_material"] = {{"single", summary.single.by_material},
                                {"cluster", summary.cluster.by_material},
                                {"projection", summary.projection.by_material}};
+  if (summary.pfa) {
+    object["rms"]["pfa"] = summary.pfa->rms;
+    object["rms_by_channel"]["pfa"] = summary.pfa->by_channel;
+    object["rms_by_material"]["pfa"] = summary.pfa->by_material;
+  }
+  object["outliers"] = outliers_json(summary.outliers, session);
   object["texels_by_material"] = summary.texels_by_material;
   object["prior"] = prior_json(summary.prior);
   return object.dump(2);

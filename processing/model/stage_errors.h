@@ -15,7 +15,7 @@ struct StageError {
   std::vector<double> by_material;  // samples of the lumitexels that carry this label
 };
 
-// weights: one entry a lumitexel. label: material of each lumitexel.
+// weights: one entry a lumitexel, of the model's basis as it is. label: material of each lumitexel.
 StageError stage_error(const Model& model, FitStage stage, const Observations& observations, const std::vector<int>& label,
                        const std::vector<TexelWeights>& weights);
 

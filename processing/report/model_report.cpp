@@ -27,6 +27,7 @@ std::string model_report(const ReportSubject& subject, Progress& progress) {
   body += sample_error_section(provenance);
   if (compared) body += photograph_error_section(*subject.evaluation);
   body += material_section(subject, renderer);
+  body += outlier_section(provenance);
   if (subject.session != nullptr) body += setup_section(*subject.session);
   body += timing_section(provenance) + definitions_section();
 

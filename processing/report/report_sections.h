@@ -17,6 +17,7 @@ std::vector<std::int64_t> texels_by_material(const Model& model);
 std::string headline(const ReportSubject& subject, const nlohmann::json& provenance);
 std::string sample_error_section(const nlohmann::json& provenance);  // the paper's Table II
 std::string photograph_error_section(const Evaluation& evaluation);
+std::string outlier_section(const nlohmann::json& provenance);  // empty for a model that was not looked through
 std::string timing_section(const nlohmann::json& provenance);
 std::string definitions_section();
 

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "processing/image/exr_file.h"
+#include "processing/model/outliers.h"
 #include "processing/report/html.h"
 #include "processing/report/report_sections.h"
 
@@ -15,6 +16,7 @@ const char* stage_title(const std::string& stage) {
   if (stage == "single") return "one BRDF for all (1-RMS)";
   if (stage == "cluster") return "one BRDF a material (C-RMS)";
   if (stage == "projection") return "a mixture a texel (P-RMS)";
+  if (stage == "pfa") return "of functions moved to fit (F-RMS)";
   return "";
 }
 
@@ -172,6 +174,30 @@ std::string photograph_error_section(const Evaluation& evaluation) {
       error_table("Photographs kept out of the fit", evaluation.heldout) +
           error_table("Photographs used in the fit", evaluation.fit) + "<h3>Each photograph</h3>" +
           html::table({"photograph", "role", "relative RMS", "clipped", "square roots", "PSNR (dB)"}, rows));
+}
+
+std::string outlier_section(const Json& provenance) {
+  const Json outliers = provenance.value("outliers", Json::object());
+  if (!outliers.contains("count")) return "";
+  std::vector<std::string> header{"photograph"};
+  for (const OutlierReason reason : kOutlierReasons) header.push_back(to_string(reason));
+  std::vector<std::vector<std::string>> rows;
+  const auto add = [&](const std::string& name, const Json& counts) {
+    std::vector<std::string> row{name};
+    for (const OutlierReason reason : kOutlierReasons) row.push_back(html::number(number_or_nan(counts, to_string(reason)), 8));
+    rows.push_back(row);
+  };
+  const Json by_view = outliers.value("by_view", Json::object());
+  for (const auto& [view, counts] : by_view.items()) add(view, counts);
+  add("all", outliers.at("count"));
+  return html::section(
+      "What the model does not explain",
+      "Samples that lie more than " + html::number(number_or_nan(outliers, "beyond_scales")) +
+          " scales of their material's error model from the prediction. None was dropped. Dark: under half of the diffuse light "
+          "alone, as in a shadow that the mesh does not cast. No highlight: predicted and not there. Highlight: there and not "
+          "predicted. Extra light: brighter away from any highlight, as by light from other surfaces. Colour: as bright, of another "
+          "colour. The worst are listed in the model's outliers.csv.",
+      html::table(header, rows));
 }
 
 std::string timing_section(const Json& provenance) {

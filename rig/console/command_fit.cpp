@@ -22,7 +22,7 @@ struct FitSettings {
 
 constexpr std::pair<const char*, FitMethod> kMethods[] = {{"lumitexel", FitMethod::Lumitexel}, {"paper", FitMethod::Paper}};
 constexpr std::pair<const char*, ErrorSource> kErrors[] = {
-    {"auto", ErrorSource::Auto}, {"given", ErrorSource::Given}, {"estimated", ErrorSource::Estimated}};
+    {"auto", ErrorSource::Auto}, {"given", ErrorSource::Given}, {"labels", ErrorSource::Labels}, {"estimated", ErrorSource::Estimated}};
 
 template <typename Value, std::size_t kCount>
 Value named(const char* option, const std::string& name, const std::pair<const char*, Value> (&known)[kCount]) {
@@ -72,22 +72,47 @@ std::string line(const char* format, Values... values) {
   return buffer;
 }
 
+// A row's figure of every stage that ran, in Table II's order.
+template <typename Figure>
+std::string rms_row(const std::string& title, const FitSummary& summary, Figure figure) {
+  std::string text = line("  %-30s", title.c_str());
+  for (const StageError* stage : {&summary.single, &summary.cluster, &summary.projection}) text += line(" %9.5f", figure(*stage));
+  if (summary.pfa) text += line(" %9.5f", figure(*summary.pfa));
+  return text + "\n";
+}
+
+std::string rms_table(const FitSummary& summary) {
+  std::string text = line("%-32s %9s %9s %9s", "RMS of the samples, 1/sr", "1-RMS", "C-RMS", "P-RMS");
+  text += summary.pfa ? line(" %9s\n", "F-RMS") : "\n";
+  text += rms_row("all", summary, [](const StageError& stage) { return stage.rms; });
+  for (std::size_t c = 0; c < summary.single.by_channel.size(); ++c) {
+    text += rms_row("channel " + std::to_string(c), summary, [c](const StageError& stage) { return stage.by_channel[c]; });
+  }
+  for (std::size_t j = 0; j < summary.single.by_material.size(); ++j) {
+    text += rms_row(line("material %-2zu %10zu texels", j, summary.texels_by_material[j]), summary,
+                    [j](const StageError& stage) { return stage.by_material[j]; });
+  }
+  return text;
+}
+
+std::string outlier_line(const Outliers& outliers) {
+  std::size_t all = 0;
+  std::string reasons;
+  for (const OutlierReason reason : kOutlierReasons) {
+    const std::size_t count = outliers.count[static_cast<std::size_t>(reason)];
+    all += count;
+    reasons += line("%s %zu %s", reasons.empty() ? ":" : ",", count, to_string(reason));
+  }
+  return line("%zu samples are not explained", all) + reasons + " (the worst: outliers.csv)\n";
+}
+
 std::string fit_text(const FitSettings& settings, const FitSummary& summary) {
   std::string text = line("%s: %zu materials, %zu lumitexels, %zu samples (%.1f a lumitexel; %zu lumitexels have none)\n",
                           settings.out.c_str(), summary.texels_by_material.size(), summary.lumitexels, summary.samples,
                           static_cast<double>(summary.samples) / static_cast<double>(summary.lumitexels), summary.starved);
   if (summary.unseen_triangles > 0) text += line("  %zu triangles are seen by no view\n", summary.unseen_triangles);
-  text += line("RMS of the samples, 1/sr         %9s %9s %9s\n", "1-RMS", "C-RMS", "P-RMS");
-  text += line("  all                            %9.5f %9.5f %9.5f\n", summary.single.rms, summary.cluster.rms,
-               summary.projection.rms);
-  for (std::size_t c = 0; c < summary.single.by_channel.size(); ++c) {
-    text += line("  channel %-2zu                     %9.5f %9.5f %9.5f\n", c, summary.single.by_channel[c],
-                 summary.cluster.by_channel[c], summary.projection.by_channel[c]);
-  }
-  for (std::size_t j = 0; j < summary.single.by_material.size(); ++j) {
-    text += line("  material %-2zu %10zu texels  %9.5f %9.5f %9.5f\n", j, summary.texels_by_material[j],
-                 summary.single.by_material[j], summary.cluster.by_material[j], summary.projection.by_material[j]);
-  }
+  text += rms_table(summary);
+  text += outlier_line(summary.outliers);
   text += "Stage            seconds   peak MB\n";
   for (const StageCost& stage : summary.stages) {
     text += line("  %-14s %8.2f %9.0f\n", stage.name.c_str(), stage.seconds, static_cast<double>(stage.peak_bytes) / 1e6);
@@ -130,8 +155,9 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
       ->check(CLI::Range(0, 3))
       ->capture_default_str();
   command->add_option("--errors", settings->errors,
-                      "What a fit takes for noise. estimated: what each material's residuals say; given: 30 % of each prediction "
-                      "and of the median; auto: estimated, unless that predicts left-out samples worse")
+                      "What a fit takes for noise. given: 30 % of each prediction and of the median; estimated: what each material's "
+                      "residuals say, outliers counting less; labels: estimated for telling materials apart, given for fitting "
+                      "them; auto: whichever predicts left-out samples best")
       ->capture_default_str();
   command->add_flag("--principal-functions", settings->principal_functions,
                     "Also move the basis BRDFs of each material (principal function analysis), where left-out surface points are "

@@ -52,6 +52,28 @@ TEST(FitModel, ProvenanceSaysWhatWasDone) {
   EXPECT_EQ(names, (std::vector<std::string>{"atlas", "lumitexels", "materials", "projection", "model"}));
 }
 
+// The paper's method ends with functions moved to fit; what the texels mixed before stays in the model and can be shown.
+TEST(FitModel, WithPrincipalFunctionsBothStagesAreKept) {
+  const TemporaryFolder folder;
+  const CalibratedSession session = sphere_session(
+      {view_of_origin("a", {0.5, 0, 0}, {0.6, 0.4, 0.3}), view_of_origin("b", {0.45, 0.2, 0.1}, {0.6, -0.4, 0.3}),
+       view_of_origin("c", {0.45, -0.2, 0.1}, {0.7, 0.1, -0.3}), view_of_origin("d", {0.4, 0.1, 0.3}, {0.7, 0.1, 0.5})},
+      folder);
+  FitOptions options = FitOptions::preset("draft");
+  options.method = FitMethod::Paper;
+  options.materials = 2;
+  options.plain_projection = options.principal_functions = true;
+  options.shared_lobe_shape = false;
+  NoProgress progress;
+  const FittedModel fitted = fit_model(session, options, {}, progress);
+  ASSERT_TRUE(fitted.summary.pfa.has_value());
+  EXPECT_LE(fitted.summary.pfa->rms, fitted.summary.projection.rms * (1.0 + 1e-6));  // least squares of the same samples, moved on
+  EXPECT_TRUE(has_principal_functions(fitted.model));
+  const auto rms = nlohmann::json::parse(fitted.model.provenance_json).at("rms");
+  EXPECT_EQ(rms.at("pfa"), fitted.summary.pfa->rms);
+  EXPECT_EQ(rms.at("projection"), fitted.summary.projection.rms);
+}
+
 TEST(FitModel, EveryTexelThatATriangleCanShowHasAMaterial) {
   const TemporaryFolder folder;
   const FittedModel fitted = fit_sphere(1, folder);

@@ -39,6 +39,12 @@ Model odd_model() {
   for (int k = 0; k < 2; ++k) model.materials[1].basis.push_back(odd_brdf(random));
   model.weights = Image(6, 5, 5);
   for (float& value : model.weights.data) value = unit(random);
+  for (ModelMaterial& material : model.materials) {
+    for (std::size_t k = 0; k < material.basis.size(); ++k) material.projection_basis.push_back(odd_brdf(random));
+  }
+  model.projection_weights = Image(6, 5, 5);
+  for (float& value : model.projection_weights.data) value = unit(random);
+  model.outliers_csv = "view,reason\na,dark\n";
   for (float& value : model.uncertainty.data) value = unit(random);
   for (std::size_t t = 0; t < model.material.size(); ++t) {
     model.material[t] = static_cast<std::int16_t>(static_cast<int>(t % 3) - 1);
@@ -72,10 +78,14 @@ void expect_equal(const Model& a, const Model& b) {
     ASSERT_EQ(a.materials[m].basis.size(), b.materials[m].basis.size());
     for (std::size_t k = 0; k < a.materials[m].basis.size(); ++k) {
       expect_equal(a.materials[m].basis[k], b.materials[m].basis[k]);
+      ASSERT_EQ(a.materials[m].projection_basis.size(), b.materials[m].projection_basis.size());
+      if (has_principal_functions(a)) expect_equal(a.materials[m].projection_basis[k], b.materials[m].projection_basis[k]);
     }
   }
   EXPECT_EQ(a.material, b.material);
   EXPECT_EQ(a.weights.data, b.weights.data);
+  EXPECT_EQ(a.projection_weights.data, b.projection_weights.data);
+  EXPECT_EQ(a.outliers_csv, b.outliers_csv);
   EXPECT_EQ(a.normal.data, b.normal.data);
   EXPECT_EQ(a.uncertainty.data, b.uncertainty.data);
   EXPECT_EQ(a.samples.data, b.samples.data);

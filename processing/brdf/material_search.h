@@ -1,0 +1,26 @@
+// As many materials as wanted among some lumitexels: how they were looked for, and by what they were fitted.
+#pragma once
+
+#include <functional>
+
+#include "processing/brdf/cluster_materials.h"
+
+namespace lumitexel {
+
+struct MaterialSearch {
+  ErrorSource errors = ErrorSource::Given;  // never Auto
+  MaterialFitOptions fit;                   // as every material was fitted
+  MaterialModel whole;                      // one for everything
+  Mixture mixture;
+};
+
+// Splits into more materials than wanted (split_materials.h), lets the mixture settle, merges (merge_materials.h). Auto: with the given
+// error model and with estimated ones, then as error_choice.h decides. report: as of cluster_materials.
+MaterialSearch search_for_materials(const Observations& observations, const LumitexelList& selection, const ClusterOptions& options,
+                                    const std::function<void(int)>& report);
+
+// Each material's lobes, asked for anew: while splitting and merging all had those of the whole. fits: one a material.
+void choose_lobes(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels, const Responsibilities& r,
+                  const MaterialFitOptions& options, std::vector<BrdfFit>& fits);
+
+}  // namespace lumitexel
