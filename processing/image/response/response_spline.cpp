@@ -1,4 +1,4 @@
-#include "processing/image/response_spline.h"
+#include "processing/image/response/response_spline.h"
 
 #include <algorithm>
 #include <array>
