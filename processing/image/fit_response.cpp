@@ -6,6 +6,7 @@
 
 #include "drivers/error.h"
 #include "processing/image/response/bracket_pixels.h"
+#include "processing/image/response/response_kinks.h"
 #include "processing/image/response/response_least_squares.h"
 
 namespace lumitexel {
@@ -20,34 +21,61 @@ double rare_chi_square(int n) {
   return n * std::pow(1.0 - spread + 2.326 * std::sqrt(spread), 3);
 }
 
+// Wald's statistic of "no bend", which a curve without kinks tells.
+void state_test(const ResponseLeastSquares& fit, ResponseFit& result) {
+  const ResponseMatrix& normal = fit.reduced().normal;
+  const ResponseMatrix known = fit.covariance() * normal;  // the prior keeps the rest from moving at all
+  result.freedoms = std::max(1, static_cast<int>(std::lround((known * known).trace())));
+  result.chi_square =
+      fit.parameters().dot(normal * fit.parameters()) / std::max(1.0, std::pow(fit.residual_scale(), 2));
+}
+
 void state_points(const ResponseLeastSquares& fit, const LinearSensor& sensor, const UnitSensor& unit,
                   ResponseFit& result) {
-  const ResponseSpline curve(fit.coefficients());
-  const ResponseMatrix covariance = fit.covariance() * std::max(1.0, result.residual_scale * result.residual_scale);
-  const ResponseSpline::Vector at_reference = curve.linear_gradient(ResponseLeastSquares::kReference) / curve.linear(ResponseLeastSquares::kReference);
-  double sum = 0.0, weights = 0.0;
+  const ResponseSpline curve(fit.parameters());
+  const ResponseMatrix covariance = fit.covariance() * std::max(1.0, std::pow(fit.residual_scale(), 2));
+  const double reference = ResponseLeastSquares::kReference, lowest = std::max(fit.reduced().lowest, 0.0);
+  const ResponseSpline::Vector at_reference = curve.linear_gradient(reference) / curve.linear(reference);
+  result.points.clear();
   for (int i = 0; i < kPoints; ++i) {
-    const double u = std::max(fit.reduced().lowest, 0.0) +
-                     (fit.reduced().highest - std::max(fit.reduced().lowest, 0.0)) * std::pow((i + 1.0) / kPoints, 2);
+    const double u = lowest + (fit.reduced().highest - lowest) * std::pow((i + 1.0) / kPoints, 2);
     const ResponseSpline::Vector slope = curve.linear_gradient(u) / curve.linear(u) - at_reference;
     const double sigma = std::sqrt(slope.dot(covariance * slope));
     result.points.push_back({sensor.black_level_dn + u * unit.range_dn, curve.linear(u) * unit.range_dn, sigma});
-    const double weight = 1.0 / (sigma * sigma + 1e-8);
-    sum += weight * std::log(curve.linear(u) / u);
+  }
+}
+
+// Against the straight line that fits best; points that are not known to a negligible part say nothing here.
+double largest_departure(const std::vector<ResponsePoint>& points, double black_level_dn) {
+  double sum = 0.0, weights = 0.0;
+  for (const ResponsePoint& point : points) {
+    const double weight = 1.0 / (point.relative_sigma * point.relative_sigma + 1e-8);
+    sum += weight * std::log(point.linear_dn / (point.code_dn - black_level_dn));
     weights += weight;
   }
-  // Against the straight line that fits best; points that are not known to a negligible part say nothing here.
-  for (const ResponsePoint& point : result.points) {
-    const double straight = (point.code_dn - sensor.black_level_dn) * std::exp(sum / weights);
+  double largest = 0.0;
+  for (const ResponsePoint& point : points) {
+    const double straight = (point.code_dn - black_level_dn) * std::exp(sum / weights);
     const double departure = std::abs(point.linear_dn / straight - 1.0);
-    if (departure > 2.0 * point.relative_sigma)
-      result.largest_departure = std::max(result.largest_departure, departure);
+    if (departure > 2.0 * point.relative_sigma) largest = std::max(largest, departure);
   }
+  return largest;
+}
+
+void state_fit(const ResponseLeastSquares& fit, const LinearSensor& sensor, const UnitSensor& unit,
+               ResponseFit& result) {
+  result.residual_scale = fit.residual_scale();
+  result.electrons_per_dn = 1.0 / (fit.shot() * unit.range_dn);
+  result.electrons_measured = fit.shot_measured();
+  state_points(fit, sensor, unit, result);
+  result.largest_departure = largest_departure(result.points, sensor.black_level_dn);
+  result.determined = result.points[kPoints / 4].relative_sigma < kWorstRelativeSigma &&
+                      result.points.back().relative_sigma < kWorstRelativeSigma;
 }
 
 ResponseCurve tabulated(const ResponseLeastSquares& fit, const LinearSensor& sensor, const UnitSensor& unit) {
   constexpr int kNodes = 512;
-  const ResponseSpline curve(fit.coefficients());
+  const ResponseSpline curve(fit.parameters());
   std::vector<double> codes, linears;
   for (int i = 0; i <= kNodes; ++i) {
     const double u = ResponseSpline::at_place(static_cast<double>(i) / kNodes);
@@ -68,26 +96,22 @@ ResponseFit fit_response(const std::vector<std::vector<Frame>>& brackets, const 
   result.iterations = fit.run();
   result.pixels = fit.reduced().pixels;
   if (result.iterations == 0) {
-    result.why = result.pixels < ResponseLeastSquares::kFewestPixels ? "too few pixels with two usable exposures" : "no convergence";
+    const bool few = result.pixels < ResponseLeastSquares::kFewestPixels;
+    result.why = few ? "too few pixels with two usable exposures" : "no convergence";
     return result;
   }
-  const ReducedEquations& reduced = fit.reduced();
-  const double freedoms = reduced.samples - reduced.pixels - ResponseSpline::kCoefficients + 1;
-  result.residual_scale = std::sqrt(reduced.chi_square / std::max(1.0, freedoms));
-  result.electrons_per_dn = 1.0 / (fit.shot() * unit.range_dn);
-  result.electrons_measured = fit.shot_measured();
-  const ResponseMatrix known = fit.covariance() * reduced.normal;  // the prior keeps the rest from moving at all
-  result.freedoms = std::max(1, static_cast<int>(std::lround((known * known).trace())));
-  result.chi_square = fit.coefficients().dot(reduced.normal * fit.coefficients()) /
-                      std::max(1.0, result.residual_scale * result.residual_scale);
-  state_points(fit, sensor, unit, result);
-  result.determined = result.points[kPoints / 4].relative_sigma < kWorstRelativeSigma &&
-                      result.points.back().relative_sigma < kWorstRelativeSigma;
+  state_test(fit, result);
+  state_fit(fit, sensor, unit, result);
   if (!result.determined) {
     result.why = "the exposures overlap too little to know the curve to 5 %";
-  } else if (result.chi_square > rare_chi_square(result.freedoms) && result.largest_departure > kNegligibleCurvature) {
-    result.curve = tabulated(fit, sensor, unit);
+    return result;
   }
+  if (result.chi_square < rare_chi_square(result.freedoms) || result.largest_departure < kNegligibleCurvature)
+    return result;
+  result.iterations += add_kinks(fit);
+  result.kinks = fit.kinks();
+  if (result.kinks > 0) state_fit(fit, sensor, unit, result);
+  result.curve = tabulated(fit, sensor, unit);
   return result;
 }
 

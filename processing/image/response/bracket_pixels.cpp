@@ -30,7 +30,7 @@ void check_bracket(const std::vector<Frame>& bracket) {
 
 BracketPixel pixel_of(const std::vector<Frame>& bracket, std::size_t i, const LinearSensor& sensor,
                       const UnitSensor& unit) {
-  BracketPixel pixel{{}, 0.0};
+  BracketPixel pixel{{}, 0.0, true};
   double sum = 0.0, time_s = 0.0;
   for (const Frame& frame : bracket) {
     const double u = (frame.samples[i] - sensor.black_level_dn) / unit.range_dn;

@@ -22,7 +22,8 @@ struct PixelSample {
 
 struct BracketPixel {
   std::vector<PixelSample> samples;
-  double rate;  // linear value in units of the range, per second
+  double rate;        // linear value in units of the range, per second
+  bool tells = true;  // enough, of the curve
 };
 
 // Pixels of every brightness alike, so that the curve is known everywhere: a scene is mostly dark. `rate` is that of a

@@ -9,7 +9,7 @@
 namespace lumitexel {
 namespace {
 
-using Vector = ResponseSpline::Vector;
+using Coefficients = ResponseSpline::Coefficients;
 
 // log L as a sum of log u and splines over the place of u.
 constexpr int kTerms = ResponseSpline::kCoefficients + 1;
@@ -19,7 +19,6 @@ Terms terms(double u) {
   row << std::log(u), ResponseSpline::basis(u);
   return row;
 }
-
 
 struct Equations {
   Eigen::Matrix<double, kTerms, kTerms> normal = 1e-3 * Eigen::Matrix<double, kTerms, kTerms>::Identity();
@@ -56,16 +55,15 @@ struct Equations {
 };
 
 // From log L to log slope, and that to the spline.
-Vector spline_of(const Terms& log_curve, double lowest) {
-  using Matrix = Eigen::Matrix<double, ResponseSpline::kCoefficients, ResponseSpline::kCoefficients>;
-  Matrix normal = 0.1 * bend_form() + 1e-9 * Matrix::Identity();
-  Vector right = Vector::Zero();
+Coefficients spline_of(const Terms& log_curve, double lowest) {
+  CoefficientMatrix normal = 0.1 * bend_form() + 1e-9 * CoefficientMatrix::Identity();
+  Coefficients right = Coefficients::Zero();
   for (int i = 1; i <= 100; ++i) {
     const double u = ResponseSpline::at_place(0.01 * i), delta = 1e-3 * u;
     if (u < lowest) continue;
     const double below = log_curve.dot(terms(u - delta)), above = log_curve.dot(terms(std::min(u + delta, 1.0)));
     const double steepness = std::max((above - below) / (std::min(u + delta, 1.0) - u + delta), 0.1 / u);
-    const Vector row = ResponseSpline::basis(u);
+    const Coefficients row = ResponseSpline::basis(u);
     normal += row * row.transpose();
     right += row * (log_curve.dot(terms(u)) + std::log(steepness));
   }
@@ -74,7 +72,7 @@ Vector spline_of(const Terms& log_curve, double lowest) {
 
 }  // namespace
 
-Vector starting_curve(const std::vector<BracketPixel>& pixels, const UnitSensor& sensor) {
+Coefficients starting_curve(const std::vector<BracketPixel>& pixels, const UnitSensor& sensor) {
   Equations equations;
   for (const BracketPixel& pixel : pixels) equations.add(pixel, sensor);
   return spline_of(equations.normal.ldlt().solve(equations.right), equations.lowest);

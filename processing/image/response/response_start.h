@@ -8,6 +8,6 @@ namespace lumitexel {
 
 // log L = log rate + log time is linear in the parameters of log L, every pixel's rate eliminated. The errors of dim
 // samples are not what it thinks, so it only starts the rest.
-ResponseSpline::Vector starting_curve(const std::vector<BracketPixel>& pixels, const UnitSensor& sensor);
+ResponseSpline::Coefficients starting_curve(const std::vector<BracketPixel>& pixels, const UnitSensor& sensor);
 
 }  // namespace lumitexel

@@ -49,11 +49,13 @@ LinearisedSample linearised(const ResponseSpline& curve, const UnitSensor& senso
   if (!sample.censored) {
     at.residual = sample.u - at.predicted - bend;
     at.weight = 1.0 / variance;
+    at.surprise = at.residual * at.residual / variance + std::log(variance);
     return at;
   }
   const double a = (at.predicted + bend - sensor.usable) / std::sqrt(variance), h = log_cdf_slope(a);
   at.weight = a < kCertainSigmas ? h * (h + a) / variance : 0.0;
   at.residual = std::sqrt(variance) / (h + a);
+  at.surprise = -2.0 * log_cdf(a);
   return at;
 }
 

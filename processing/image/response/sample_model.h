@@ -8,8 +8,9 @@ namespace lumitexel {
 
 // A sample about the curve's prediction, for least squares: u = predicted + bend + by_rate * (change of the rate).
 // slope: dL/du at `predicted`. Of a censored sample weight and residual give its log likelihood's slope and curvature.
+// surprise: -2 log likelihood, up to a constant.
 struct LinearisedSample {
-  double residual, weight, by_rate, predicted, slope;
+  double residual, weight, by_rate, predicted, slope, surprise;
 };
 
 LinearisedSample linearised(const ResponseSpline& curve, const UnitSensor& sensor, const PixelSample& sample,
