@@ -5,8 +5,9 @@
 // tests/bench/response_table compares them. Here: maximum likelihood in the samples, every pixel's rate eliminated,
 // with the sensor's noise (shot noise goes with E, read noise and rounding with the code). The curve is
 //     L(u) = integral from 0 to u of exp(q),   u = (code - black) / (clip - black),
-// so that it cannot fall; q is a cubic spline, bent no more than a prior allows. Its constant is the scale, which
-// exposures cannot tell: L = u at u = 1/2.
+// so that it cannot fall; q is a cubic spline whose bends have a normal prior, its sigma chosen by the samples (MacKay
+// 1992). Kinks of q, such as the end of sRGB's straight toe, are added where the evidence prefers a curve with them: a
+// spline rounds them, by 0.3 to 0.5 % of sRGB. q's constant is the scale, which exposures cannot tell: L = u at u = 1/2.
 //
 // What kept it from the truth, and what is done: samples near clipping are censored (Tobin), not left out; those that
 // count are chosen by the pixel's other samples, since a choice by the whole pixel prefers one sign of noise; shot
@@ -16,7 +17,8 @@
 //
 // The usable range is kUsableFrom to kUsableTo of the codes, and kUsableElectrons on. Above, shot noise reaches into
 // clipping; below, one sample is good to 20 % at best, and a steep curve's mean code no longer tells its mean light.
-// Known weak: sRGB's kink lies at 56 electrons of an 18,000 electron well; there the spline rounds it, by 0.3 to 1 %.
+// Known weak: a step of the slope (ROMM RGB's toe, a sensor of two slopes) is no kink of this kind and is rounded, by
+// 4 to 8 % within a knot of it; kinks within half a knot of the usable range's ends are not looked for.
 #pragma once
 
 #include <Eigen/Core>
@@ -50,6 +52,7 @@ struct ResponseFit {
   double electrons_per_dn = 0;
   bool electrons_measured = false;  // else the sensor's own: too few pixels in which shot noise prevails
   int pixels = 0, iterations = 0;
+  int kinks = 0;  // of the curve's log slope, which the samples demand
 };
 
 inline constexpr double kNegligibleCurvature = 0.003;  // the fit's own bias is up to 0.002

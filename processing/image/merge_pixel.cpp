@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "processing/image/censored_normal.h"
 #include "processing/image/radiance_image.h"
 
 namespace lumitexel {
@@ -14,13 +14,6 @@ constexpr double kDarkSigmas = 3.0;
 // A censored sample that was expected so far above the bound tells nothing new.
 constexpr double kCertainSigmas = 5.0;
 constexpr int kMostNewtonSteps = 20;
-
-// Density over distribution of the standard normal: the slope of log(distribution).
-double log_cdf_slope(double a) {
-  if (a < -30.0) return -a;  // its limit; the distribution would underflow
-  const double density = std::exp(-0.5 * a * a) / std::sqrt(2.0 * std::numbers::pi);
-  return density / (0.5 * std::erfc(-a / std::numbers::sqrt2));
-}
 
 }  // namespace
 

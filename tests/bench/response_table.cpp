@@ -23,6 +23,7 @@ struct Options {
   int bits = 0, trials = 5, pixels = 160'000;
   std::uint64_t seed = 1;
   bool profile = false, even = false;
+  std::string curve;
 };
 
 struct Errors {
@@ -101,7 +102,7 @@ void print_row(int bits, const CurvedResponse& truth, const Options& options) {
   const LinearSensor sensor = sensor_of_bits(bits);
   Errors ours, debevec, robertson;
   std::vector<ResponseFit> fits;
-  double residual_scale = 0.0, iterations = 0.0;
+  double residual_scale = 0.0, iterations = 0.0, kinks = 0.0;
   for (int trial = 0; trial < options.trials; ++trial) {
     const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(trial);
     const std::vector<Frame> frames =
@@ -112,6 +113,7 @@ void print_row(int bits, const CurvedResponse& truth, const Options& options) {
       ours.add(response_errors(fit, truth, sensor));
       residual_scale += fit.residual_scale;
       iterations += fit.iterations;
+      kinks += fit.kinks;
     }
     if (bits != 8 || options.profile) continue;
     debevec.add(opencv_errors(*cv::createCalibrateDebevec(300), frames, truth, sensor));
@@ -120,8 +122,8 @@ void print_row(int bits, const CurvedResponse& truth, const Options& options) {
   const double n = std::max(1.0, static_cast<double>(fits.size()));
   std::printf("%2d bits %-16s", bits, truth.name.c_str());
   ours.print("ours");
-  std::printf(" (%zu/%d, residuals %.3f, %.0f iterations)", fits.size(), options.trials, residual_scale / n,
-              iterations / n);
+  std::printf(" (%zu/%d, residuals %.3f, %.0f iterations, %.1f kinks)", fits.size(), options.trials, residual_scale / n,
+              iterations / n, kinks / n);
   if (bits == 8 && !options.profile) {
     debevec.print("Debevec");
     robertson.print("Robertson");
@@ -140,14 +142,19 @@ int main(int argc, char** argv) {
   app.add_option("--pixels", options.pixels, "of each frame")->check(CLI::Range(1000, 10'000'000));
   app.add_flag("--profile", options.profile, "error, scatter and stated sigma along the curve; without OpenCV");
   app.add_option("--bits", options.bits, "only these")->check(CLI::IsMember({8, 12, 14}));
+  app.add_option("--curve", options.curve, "only responses whose name begins so");
   app.add_flag("--even", options.even, "exposures at ratios of 4 instead of 3, 5 and 4.2");
   CLI11_PARSE(app, argc, argv);
   std::printf("%s\n%d seeds, %d pixels: largest error in %% (median, worst seed), rms error in %%\n",
               machine_line().c_str(), options.trials, options.pixels);
   for (const int bits : {8, 12, 14}) {
     if (options.bits != 0 && bits != options.bits) continue;
-    for (const CurvedResponse& truth : {straight(), compressive(0.3), srgb_response(), gamma_response(2.2)})
-      print_row(bits, truth, options);
+    // The first four have been tuned on.
+    for (const CurvedResponse& truth :
+         {straight(), compressive(0.3), srgb_response(), gamma_response(2.2), gamma_response(1.8), rec709_response(),
+          romm_response(), filmic_response(), shouldered_response(), two_slopes()}) {
+      if (truth.name.rfind(options.curve, 0) == 0) print_row(bits, truth, options);
+    }
   }
   return 0;
 }

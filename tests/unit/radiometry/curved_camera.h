@@ -38,6 +38,43 @@ inline CurvedResponse compressive(double k) {
           [k](double u) { return u / (1.0 + 0.5 * k - 0.5 * k * u); }};
 }
 
+// A code known only as a function of light, rising: its inverse by bisection.
+inline CurvedResponse inverted(std::string name, std::function<double(double)> code) {
+  auto light = [code](double u) {
+    double low = 0.0, high = 1.0;
+    for (int halving = 0; halving < 60; ++halving) {
+      const double middle = 0.5 * (low + high);
+      (code(middle) < u ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+  };
+  return {std::move(name), std::move(code), std::move(light)};
+}
+
+// Responses on which nothing was tuned. Rec. 709 and ROMM (ProPhoto) RGB: lines, then powers of 0.45 and 1 / 1.8.
+inline CurvedResponse rec709_response() {
+  return inverted("Rec. 709", [](double x) { return x < 0.018 ? 4.5 * x : 1.099 * std::pow(x, 0.45) - 0.099; });
+}
+inline CurvedResponse romm_response() {
+  return inverted("ROMM", [](double x) { return x < 1.0 / 512.0 ? 16.0 * x : std::pow(x, 1.0 / 1.8); });
+}
+// Hable's (2010) filmic curve, an S over log light, white at 11.2 of its units.
+inline CurvedResponse filmic_response() {
+  const auto hable = [](double x) {
+    return (x * (0.15 * x + 0.05) + 0.004) / (x * (0.15 * x + 0.5) + 0.06) - 0.02 / 0.3;
+  };
+  return inverted("filmic", [hable](double x) { return hable(11.2 * x) / hable(11.2); });
+}
+// A square root over a pedestal with a soft shoulder, as cameras' own tone curves are.
+inline CurvedResponse shouldered_response() {
+  const auto toned = [](double x) { return std::tanh(1.2 * (std::sqrt(x + 0.01) - 0.1)); };
+  return inverted("shouldered", [toned](double x) { return toned(x) / toned(1.0); });
+}
+// A sensor of two slopes, the second a quarter, above 30 % of the light.
+inline CurvedResponse two_slopes() {
+  return inverted("two slopes", [](double x) { return std::min(x, 0.3 + 0.25 * (x - 0.3)) / 0.475; });
+}
+
 // sensor: noise in codes; shot noise of electrons_per_dn * (clip - black) electrons at the range's end.
 inline std::vector<Frame> curved_bracket(const CurvedResponse& response, const LinearSensor& sensor, int bits,
                                          const std::vector<double>& exposures_s, std::uint64_t seed,

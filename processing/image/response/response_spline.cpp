@@ -1,4 +1,4 @@
-#include "processing/image/response_spline.h"
+#include "processing/image/response/response_spline.h"
 
 #include <algorithm>
 #include <array>
@@ -14,40 +14,58 @@ std::array<double, 4> blends(double t) {
           t * t * t / 6.0};
 }
 
+struct LogSlope {
+  double u, q;
+  ResponseSpline::Vector by_parameters;  // dq
+};
+
+LogSlope log_slope(const ResponseSpline::Vector& parameters, double place) {
+  constexpr int kSpline = ResponseSpline::kCoefficients;
+  LogSlope at{ResponseSpline::at_place(place), 0.0, ResponseSpline::Vector::Zero(parameters.size())};
+  at.by_parameters.head<kSpline>() = ResponseSpline::basis(at.u);
+  at.q = at.by_parameters.head<kSpline>().dot(parameters.head<kSpline>());
+  for (Eigen::Index k = kSpline; k < parameters.size(); k += ResponseSpline::kOfKink) {
+    const double beyond = std::max(0.0, place - parameters[k + 1]);
+    at.q += parameters[k] * beyond;
+    at.by_parameters[k] = beyond;
+    at.by_parameters[k + 1] = beyond > 0.0 ? -parameters[k] : 0.0;
+  }
+  return at;
+}
+
 }  // namespace
 
 double ResponseSpline::place(double u) { return std::log1p(u / kToe) / std::log1p(1.0 / kToe); }
 double ResponseSpline::at_place(double place) { return kToe * std::expm1(place * std::log1p(1.0 / kToe)); }
 
-ResponseSpline::Vector ResponseSpline::basis(double u) {
-  constexpr int kSpans = kCoefficients - 3;
+ResponseSpline::Coefficients ResponseSpline::basis(double u) {
   const double at = place(std::clamp(u, 0.0, 1.0)) * kSpans;
   const int span = std::min(static_cast<int>(at), kSpans - 1);
   const std::array<double, 4> blend = blends(at - span);
-  Vector values = Vector::Zero();
+  Coefficients values = Coefficients::Zero();
   for (int k = 0; k < 4; ++k) values[span + k] = blend[static_cast<std::size_t>(k)];
   return values;
 }
 
-// Simpson's rule over cells equidistant in place as well: the integrand is smooth in it.
-ResponseSpline::ResponseSpline(const Vector& c) {
+// Simpson's rule over cells equidistant in place as well: the integrand is smooth in it, but for kinks.
+ResponseSpline::ResponseSpline(const Vector& parameters) {
   const double ds = 1.0 / kCells, stretch = std::log1p(1.0 / kToe);
   double value = 0.0;
-  Vector gradient = Vector::Zero();
+  Vector gradient = Vector::Zero(parameters.size());
+  LogSlope here = log_slope(parameters, 0.0);
   for (int i = 0; i <= kCells; ++i) {
-    const double u0 = at_place(i * ds), u1 = at_place((i + 0.5) * ds), u2 = at_place((i + 1.0) * ds);
-    const Vector here = basis(u0);
-    const double slope = std::exp(here.dot(c));
-    nodes_.push_back(u0);
+    nodes_.push_back(here.u);
     values_.push_back(value);
-    slopes_.push_back(slope);
+    slopes_.push_back(std::exp(here.q));
     gradients_.push_back(gradient);
     if (i == kCells) break;
-    const Vector middle = basis(u1), next = basis(u2);
-    const double f0 = stretch * (u0 + kToe) * slope, f1 = stretch * (u1 + kToe) * std::exp(middle.dot(c)),
-                 f2 = stretch * (u2 + kToe) * std::exp(next.dot(c));
+    const LogSlope middle = log_slope(parameters, (i + 0.5) * ds), next = log_slope(parameters, (i + 1.0) * ds);
+    const double f0 = stretch * (here.u + kToe) * std::exp(here.q),
+                 f1 = stretch * (middle.u + kToe) * std::exp(middle.q),
+                 f2 = stretch * (next.u + kToe) * std::exp(next.q);
     value += ds / 6.0 * (f0 + 4.0 * f1 + f2);
-    gradient += ds / 6.0 * (f0 * here + 4.0 * f1 * middle + f2 * next);
+    gradient += ds / 6.0 * (f0 * here.by_parameters + 4.0 * f1 * middle.by_parameters + f2 * next.by_parameters);
+    here = next;
   }
 }
 
