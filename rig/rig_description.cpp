@@ -168,6 +168,7 @@ LightPositionerDescription read_light_positioner(const TomlTable& table) {
   arm.elevation_max_deg = elevation[1];
   arm.speed_deg_per_s = table.number("speed_deg_per_s", NumberRange::positive());
   arm.settle_s = table.number("settle_s", NumberRange::non_negative());
+  if (table.has("lamp_radius_m")) arm.lamp_radius_m = table.number("lamp_radius_m", NumberRange::between(0.0, 0.2 * arm.radius_m));
   table.reject_unread();
   return arm;
 }

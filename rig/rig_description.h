@@ -58,6 +58,7 @@ struct LightPositionerDescription {
   double azimuth_min_deg = -180, azimuth_max_deg = 180;     // about rig +z, from rig +x
   double elevation_min_deg = -90, elevation_max_deg = 90;  // above the rig's xy plane
   double speed_deg_per_s = 0, settle_s = 0;
+  double lamp_radius_m = 0;  // of the lamp's evenly bright disc, which faces the pivot; 0 (not in the file): a point
   Eigen::Vector3d nominal_position_in_rig(double azimuth_deg, double elevation_deg) const;
 };
 

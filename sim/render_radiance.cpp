@@ -25,6 +25,9 @@ class ShadedScene {
     for (const Emitter& emitter : point_lamp_in_rig(world, state.light_azimuth_deg, state.light_elevation_deg)) {
       point_light_.push_back(emitter.in(mesh_from_rig));
     }
+    if ((world.settings.second_lamp_w_per_sr > 0.0).any()) {
+      second_lamp_.push_back({mesh_from_rig * world.settings.second_lamp_in_rig_m, world.settings.second_lamp_w_per_sr});
+    }
     for (const Emitter& emitter : ring_flash_in_rig(world)) ring_.push_back(emitter.in(mesh_from_rig));
     ray_spacing_ = 1.0 / std::sqrt(world.settings.samples_per_pixel);
     steel_ = {world.settings.sphere_roughness, world.settings.sphere_reflectance, Eigen::Array3d::Zero()};
@@ -44,7 +47,10 @@ class ShadedScene {
     const double tag_albedo = hit.part == ScenePart::Tag ? tag_albedo_at(hit, direction, direction_in_camera.z()) : 0.0;
     const Surface surface{hit, pattern, tag_albedo};
     Eigen::Array3d sum = Eigen::Array3d::Zero();
-    if (state_.point_light) sum += reflected_of(point_light_, surface, -direction, ray_key);
+    if (state_.point_light) {
+      sum += reflected_of(point_light_, surface, -direction, ray_key);
+      if (!second_lamp_.empty()) sum += reflected(surface, -direction, second_lamp_.front());
+    }
     if (state_.ring_flash) sum += reflected_of(ring_, surface, -direction, ray_key);
     return sum;
   }
@@ -111,7 +117,7 @@ class ShadedScene {
   WorldState state_;
   PlacedScene scene_;
   Eigen::Isometry3d mesh_from_camera_;
-  std::vector<Emitter> point_light_, ring_;
+  std::vector<Emitter> point_light_, second_lamp_, ring_;
   double ray_spacing_ = 1.0;  // pixels
   GgxBrdf steel_;
 };

@@ -119,6 +119,8 @@ void read_lamps(Table& table, SimulationSettings& s) {
   table.numbers("arm_offset_m", s.arm_offset_m, -0.05, 0.05);
   table.number("arm_azimuth_error_deg", s.arm_azimuth_error_deg, -5.0, 5.0);
   table.number("arm_elevation_error_deg", s.arm_elevation_error_deg, -5.0, 5.0);
+  table.numbers("second_lamp_w_per_sr", s.second_lamp_w_per_sr, 0.0, 1e6);
+  table.numbers("second_lamp_in_rig_m", s.second_lamp_in_rig_m, -20.0, 20.0);
   table.numbers("ring_flash_w_per_sr", s.ring_flash_w_per_sr, 1e-3, 1e6);
   table.whole("ring_flash_emitters", s.ring_flash_emitters, 1, 256);
   table.numbers("backlight_w_per_m2_sr", s.backlight_w_per_m2_sr, 0.0, 1e6);

@@ -31,6 +31,10 @@ struct SimulationSettings : BenchBehaviour {
   double lamp_pattern_exponent = 0.0;    // its intensity goes with the cosine to its axis to this power
   Eigen::Vector2d lamp_pattern_tilt_deg = Eigen::Vector2d::Zero();  // of that axis (sim/point_lamp.h)
 
+  // Another light that goes on and off with the point light: a second head on its switch, or its image in something polished.
+  Eigen::Array3d second_lamp_w_per_sr = Eigen::Array3d::Zero();  // 0: there is none
+  Eigen::Vector3d second_lamp_in_rig_m = Eigen::Vector3d::Zero();
+
   Eigen::Array3d ring_flash_w_per_sr = Eigen::Array3d::Constant(5.0);  // of all emitters together
   int ring_flash_emitters = 32;
   Eigen::Array3d backlight_w_per_m2_sr = Eigen::Array3d::Constant(2.0);

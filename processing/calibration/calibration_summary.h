@@ -22,6 +22,13 @@ struct LightSummary {
   bool off_the_arm = false;  // farther from the aligned arm than 5 sigma
 };
 
+// A light that is not the rig's own but shone with it (processing/calibration/light/stray_lights.h).
+struct StrayLightSummary {
+  std::vector<std::string> views;                              // whose spheres show it
+  Eigen::Vector3d position_in_rig = Eigen::Vector3d::Zero();  // as the rig's file has the camera
+  double sigma_m = 0;                                          // per axis
+};
+
 struct SensorSummary {
   std::string source = "rig description";  // of the noise figures; else "photon transfer"
   double electrons_per_dn = 0, read_noise_dn = 0, black_level_dn = 0, saturation_dn = 0;
@@ -80,6 +87,8 @@ struct UncertaintyShare {
 
 struct CalibrationSummary {
   std::vector<LightSummary> lights;  // in the order of the session's views
+  std::vector<StrayLightSummary> stray_lights;
+  int spheres_seen = 0;              // by the ring flash, of the rig's
   double sphere_residual_px = 0;     // rms over all highlights of the session
   double sphere_sigma_scale = 0;     // residuals over stated sigmas
   double arm_scatter_m = 0, arm_residual_m = 0;

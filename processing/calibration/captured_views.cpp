@@ -9,6 +9,7 @@
 #include "processing/calibration/calibrated_views_file.h"
 #include "processing/calibration/captured_inputs.h"
 #include "processing/calibration/light/sphere_shots.h"
+#include "processing/calibration/light/stray_lights.h"
 #include "processing/calibration/pose/joint_refinement.h"
 #include "processing/calibration/pose/object_mask.h"
 #include "processing/calibration/session_card.h"
@@ -26,7 +27,7 @@ namespace lumitexel {
 namespace {
 
 // Part of the key: change it with anything that changes what a calibration gives.
-constexpr const char* kMethod = "captured calibration 4";
+constexpr const char* kMethod = "captured calibration 5";
 // Room for the mask about the mesh's picture: a coarse mesh's error, and that of a pose that nobody measured.
 constexpr int kRegisteredMargin_px = 4, kNominalMargin_px = 8;
 
@@ -86,11 +87,23 @@ class SessionCalibration {
     const SphereHighlights seen = read_sphere_highlights(reader_, shots, lens_.camera, in_.rig, progress_);
     const LightSolution spheres = refine_jointly(seen, in_, options_, lens_, poses_, summary_);
     SessionLights lights = align_lights(spheres, records_, in_.plan, in_.rig, in_.rig.camera.camera_from_rig);
+    note_spheres(seen);
     summary_.sphere_residual_px = spheres.residual_px;
     summary_.sphere_sigma_scale = spheres.sigma_scale;
     summary_.arm_scatter_m = lights.arm.scatter_m();
     summary_.arm_residual_m = lights.arm.residual_m();
     return lights;
+  }
+
+  void note_spheres(const SphereHighlights& seen) {
+    summary_.spheres_seen = static_cast<int>(seen.rings.size());
+    const Eigen::Isometry3d rig_from_camera = in_.rig.camera.camera_from_rig.inverse();
+    for (const StrayLight& stray : locate_stray_lights(seen, lens_.camera, in_.rig)) {
+      StrayLightSummary& light = summary_.stray_lights.emplace_back();
+      for (const std::size_t v : stray.views) light.views.push_back(in_.plan.views[v].name);
+      light.position_in_rig = rig_from_camera * stray.position;
+      light.sigma_m = per_axis_sigma(stray.covariance);
+    }
   }
 
   TimedReading read_card_bracket(const SessionCard& card, const SessionLights& lights) const {

@@ -93,6 +93,13 @@ std::string views_section(const CalibrationSummary& summary) {
                     lamp ? html::number(summary.lamp.factor[v], 5) : "–",
                     lamp ? html::number(summary.lamp.factor_sigma[v], 2) : "–"});
   }
+  std::vector<std::string> strays;
+  for (const StrayLightSummary& light : summary.stray_lights) {
+    const Eigen::Vector3d& at = light.position_in_rig;
+    strays.push_back("Stray light at (" + html::number(at.x()) + ", " + html::number(at.y()) + ", " + html::number(at.z()) +
+                     ") m in the rig's frame, sigma " + html::number(1e3 * light.sigma_m) + " mm, on the spheres of " +
+                     std::to_string(light.views.size()) + " views: it is in their photographs too; move or cover it.");
+  }
   const std::string problem =
       summary.pose_problem.empty() ? "" : " Poses are the rig description's: " + summary.pose_problem;
   return html::section(
@@ -103,7 +110,7 @@ std::string views_section(const CalibrationSummary& summary) {
           html::table({"view", "silhouette, px", "pose, mm", "pose, °", "tags", "mostly from", "light, mm", "highlights",
                        "light from", "lamp", "sigma"},
                       rows) +
-          "</div>");
+          "</div>" + notes_list(strays));
 }
 
 std::string share_bars(const CalibrationSummary& summary) {

@@ -90,7 +90,7 @@ json result_json(const CalibratedSession& session, const CalibrationSummary& sum
                    {"sigma", known_or_null(session.gray_card_scale_sigma)}}}};
   const json all = summary_json(summary);
   for (const char* key : {"lens", "pose_problem", "shares", "rim_offset_px", "rim_offset_sigma_px"}) result[key] = all.at(key);
-  for (const char* key : {"sensor", "lamp", "joint", "sphere_residual_px", "arm_residual_m", "arm_scatter_m", "hot_pixels",
+  for (const char* key : {"sensor", "lamp", "joint", "stray_lights", "spheres_seen", "sphere_residual_px", "arm_residual_m", "arm_scatter_m", "hot_pixels",
                           "views_without_silhouette"}) {
     result[key] = captured || session.views.empty() ? all.at(key) : json(nullptr);
   }
@@ -146,6 +146,14 @@ void describe_given(const CalibrationSummary& summary, std::ostream& text) {
   text << "lights and scale: as given, nothing here measures them\n";
 }
 
+void describe_stray(const StrayLightSummary& light, std::ostream& text) {
+  const Eigen::Vector3d& at = light.position_in_rig;
+  text << "  stray light at (" << at.x() << ", " << at.y() << ", " << at.z() << ") m in the rig's frame, sigma " << 1e3 * light.sigma_m
+       << " mm, on the spheres of";
+  for (const std::string& view : light.views) text << ' ' << view;
+  text << ": it is in these photographs too; move or cover it\n";
+}
+
 void describe(const CalibratedSession& session, const CalibrationSummary& summary, std::ostream& text) {
   text << session.views.size() << " views calibrated, " << session.channels << " channels\n";
   const LensSummary& lens = summary.lens;
@@ -168,8 +176,10 @@ void describe(const CalibratedSession& session, const CalibrationSummary& summar
          << (summary.joint.taken ? ", taken\n" : ", not significant, not taken\n");
   }
   text << "light: " << measured << " of " << summary.lights.size() << " measured by the spheres, highlights fit to "
-       << summary.sphere_residual_px << " px rms, arm within " << 1e3 * summary.arm_residual_m << " mm rms\n"
-       << "scale: gray card to " << 100.0 * summary.scale_sigma << " %, intensity";
+       << summary.sphere_residual_px << " px rms on " << summary.spheres_seen << " spheres, arm within "
+       << 1e3 * summary.arm_residual_m << " mm rms\n";
+  for (const StrayLightSummary& light : summary.stray_lights) describe_stray(light, text);
+  text << "scale: gray card to " << 100.0 * summary.scale_sigma << " %, intensity";
   for (const double intensity : summary.intensity) text << ' ' << intensity;
   text << "\nlamp: " << (summary.lamp.drifts ? "drifts" : "steady, as far as can be told") << ", "
        << (summary.lamp.pattern_parameters > 0 ? "with" : "no") << " angular pattern; card read in "

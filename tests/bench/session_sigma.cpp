@@ -157,9 +157,18 @@ void note_camera(const json& truth, const LensSummary& lens, Ledgers& all) {
   }
 }
 
+// What the lamp sends towards the arm's pivot, of what it sends along its own axis: calibration states the former, the truth
+// the latter.
+double towards_pivot(const json& lamp) {
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  const auto tilt = lamp.at("pattern_tilt_deg").get<std::array<double, 2>>();
+  return std::pow(std::cos(kDegree * tilt[0]) * std::cos(kDegree * tilt[1]), lamp.at("pattern_exponent").get<double>());
+}
+
 // Mean of the channels' relative errors: they share the card's pose and the light's place, which dominate.
 void note_scale(const json& truth, const CalibratedSession& session, const CalibrationSummary& summary, Ledgers& all) {
-  const auto expected = truth.at("scale").at("value").get<std::vector<double>>();
+  auto expected = truth.at("scale").at("value").get<std::vector<double>>();
+  for (double& value : expected) value *= towards_pivot(truth.at("lamp"));
   double error = 0.0;
   for (std::size_t c = 0; c < expected.size(); ++c) {
     error += (summary.intensity[c] / expected[c] - 1.0) / static_cast<double>(expected.size());

@@ -37,6 +37,9 @@ TEST(RigDescription, ValuesLandWhereTheyBelong) {
   EXPECT_EQ(rig.spheres.count, 6);
   EXPECT_NEAR(rig.gray_card.normal_in_rig.norm(), 1.0, kRounding);
   EXPECT_TRUE(rig.simulation_toml.empty());
+  EXPECT_EQ(rig.light_positioner.lamp_radius_m, 0.0);
+  const std::string large = with_replaced(small_rig_toml(), "settle_s = 0.8", "settle_s = 0.8\nlamp_radius_m = 0.05");
+  EXPECT_EQ(parse_rig(large, "rig.toml").light_positioner.lamp_radius_m, 0.05);
 }
 
 TEST(RigDescription, TheCameraLooksAlongZWithYDown) {
@@ -75,6 +78,7 @@ TEST(RigDescription, MistakesAreNamedByFileLineAndKey) {
   expect_rejected("[1.0, 0.0, 0.5]", "[0.0, 0.0, 0.5]", "bench.toml:22: camera.up_in_rig: parallel", "viewing");
   expect_rejected("[0.0, 0.0, 2.0]", "[0.0, 0.0, 0.0]", "bench.toml:26: turntable.axis_direction_in_rig", "not zero");
   expect_rejected("[-110.0, 110.0]", "[110.0, -110.0]", "bench.toml:33: light_positioner.azimuth", "ascending");
+  expect_rejected("settle_s = 0.8", "settle_s = 0.8\nlamp_radius_m = 0.5", "bench.toml:37: light_positioner.lamp_radius_m: 0.5", "0.4");
   expect_rejected("spacing_m = 0.050", "spacing_m = 0.030", "bench.toml:44: spheres.spacing_m", "overlap");
   expect_rejected("[ring_flash]\nradius_m = 0.04\n", "", "ring_flash: missing", "table");
   expect_rejected("[spheres]", "[spheres]\ncolour = 3", "bench.toml:42: spheres.colour: unknown key", "radius_m");

@@ -76,12 +76,9 @@ void ArmAlignment::fit(const std::vector<ArmSample>& samples) {
     Eigen::Matrix<double, kParameters, kParameters> normal = prior.asDiagonal();
     Parameters right = -prior.cwiseProduct(correction_);
     for (const ArmSample& sample : samples) {
-      const Eigen::Matrix3d covariance = sample.covariance + scatter_m_ * scatter_m_ * Eigen::Matrix3d::Identity();
       const Eigen::Vector3d difference =
           sample.position_in_rig - position(correction_, sample.azimuth_deg, sample.elevation_deg);
-      // Cauchy weights: one at the centre, vanishing for a view whose highlights were mistaken.
-      const double weight = 1.0 / (1.0 + mahalanobis2(difference, covariance) / (kOutlierSigmas * kOutlierSigmas));
-      const Eigen::Matrix3d information = weight * covariance.inverse();
+      const Eigen::Matrix3d information = information_of(sample);
       const auto j = jacobian(sample.azimuth_deg, sample.elevation_deg);
       normal += j.transpose() * information * j;
       right += j.transpose() * information * difference;
@@ -89,6 +86,27 @@ void ArmAlignment::fit(const std::vector<ArmSample>& samples) {
     correction_ += normal.ldlt().solve(right);
     covariance_ = normal.inverse();
   }
+}
+
+// Of the sample about the arm, as much of it as counts.
+Eigen::Matrix3d ArmAlignment::information_of(const ArmSample& sample) const {
+  const Eigen::Matrix3d covariance = sample.covariance + scatter_m_ * scatter_m_ * Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d difference =
+      sample.position_in_rig - position(correction_, sample.azimuth_deg, sample.elevation_deg);
+  // Cauchy weights: one at the centre, vanishing for a view whose highlights were mistaken.
+  const double weight = 1.0 / (1.0 + mahalanobis2(difference, covariance) / (kOutlierSigmas * kOutlierSigmas));
+  return weight * covariance.inverse();
+}
+
+// The normal equations less the sample's part.
+ArmPrediction ArmAlignment::predict_without(const ArmSample& sample) const {
+  const auto j = jacobian(sample.azimuth_deg, sample.elevation_deg);
+  const Eigen::Matrix3d information = information_of(sample);
+  const Eigen::Vector3d fitted = position(correction_, sample.azimuth_deg, sample.elevation_deg);
+  const Eigen::Matrix<double, kParameters, kParameters> covariance =
+      (covariance_.inverse() - j.transpose() * information * j).inverse();
+  const Eigen::Vector3d back = j * covariance * j.transpose() * information * (sample.position_in_rig - fitted);
+  return {fitted - back, j * covariance * j.transpose() + scatter_m_ * scatter_m_ * Eigen::Matrix3d::Identity()};
 }
 
 double ArmAlignment::likeliest_scatter(const std::vector<ArmSample>& samples) const {
@@ -118,7 +136,7 @@ ArmPrediction ArmAlignment::predict(double azimuth_deg, double elevation_deg) co
 }
 
 ArmPrediction ArmAlignment::combine(const ArmSample& sample) const {
-  const ArmPrediction predicted = predict(sample.azimuth_deg, sample.elevation_deg);
+  const ArmPrediction predicted = predict_without(sample);
   const Eigen::Matrix3d from_arm = predicted.covariance.inverse(), from_spheres = sample.covariance.inverse();
   const Eigen::Matrix3d covariance = (from_arm + from_spheres).inverse();
   return {covariance * (from_arm * predicted.position_in_rig + from_spheres * sample.position_in_rig), covariance};

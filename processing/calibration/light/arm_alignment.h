@@ -37,8 +37,8 @@ class ArmAlignment {
   ArmAlignment(const LightPositionerDescription& nominal, const std::vector<ArmSample>& samples);
 
   ArmPrediction predict(double azimuth_deg, double elevation_deg) const;
-  // The measurement and the prediction merged, each with its covariance. The sample itself took part in the prediction;
-  // with ten views or more that counts little.
+  // The measurement and what the arm says without it, merged, each with its covariance. The sample must be one of those that the
+  // alignment was made from.
   ArmPrediction combine(const ArmSample& sample) const;
   // Whether the sample lies farther from the arm than 5 standard deviations.
   bool is_outlier(const ArmSample& sample) const;
@@ -52,6 +52,8 @@ class ArmAlignment {
  private:
   Eigen::Vector3d position(const Parameters& correction, double azimuth_deg, double elevation_deg) const;
   Eigen::Matrix<double, 3, kParameters> jacobian(double azimuth_deg, double elevation_deg) const;
+  ArmPrediction predict_without(const ArmSample& sample) const;
+  Eigen::Matrix3d information_of(const ArmSample& sample) const;
   void fit(const std::vector<ArmSample>& samples);
   double likeliest_scatter(const std::vector<ArmSample>& samples) const;
 

@@ -20,6 +20,7 @@ constexpr int kSubsamples = 3;  // per axis and pixel: the peak is hardly wider 
 
 struct Sample {
   double x = 0, y = 0, value = 0, sigma = 1;  // centre of the pixel
+  double noise = 1;                           // the part of sigma that is the pixel's own
   int channel = 0;
 };
 
@@ -85,6 +86,16 @@ class PeakModel {
     for (const Sample& sample : samples) add(sample);
   }
   std::size_t size() const { return samples_.size(); }
+
+  // Variance of every residual by its pixel's noise alone.
+  Eigen::VectorXd noise_shares() const {
+    Eigen::VectorXd shares(static_cast<Eigen::Index>(samples_.size()) + 1);
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      shares[static_cast<Eigen::Index>(i)] = std::pow(samples_[i].noise / samples_[i].sigma, 2);
+    }
+    shares[shares.size() - 1] = 1.0;  // the prior of the shape
+    return shares;
+  }
 
   // Not finite where the centre has left the sphere.
   Eigen::VectorXd residuals(const Parameters& p) const { return residuals(p, profiles(p)); }
@@ -165,7 +176,14 @@ class PeakModel {
   std::vector<Domain::Place> places_;  // kPlaces for each sample
 };
 
-std::vector<Sample> usable_samples(const MosaicRadiance& image, const Eigen::Vector2d& start, int reach_px) {
+bool nearer_to_another(const Eigen::Vector2d& pixel, const Eigen::Vector2d& start, const std::vector<Eigen::Vector2d>& others) {
+  return std::any_of(others.begin(), others.end(), [&](const Eigen::Vector2d& other) {
+    return (pixel - other).squaredNorm() < (pixel - start).squaredNorm();
+  });
+}
+
+std::vector<Sample> usable_samples(const MosaicRadiance& image, const Eigen::Vector2d& start, int reach_px,
+                                   const std::vector<Eigen::Vector2d>& others) {
   std::vector<Sample> samples;
   double brightest = 0.0;
   const int cx = static_cast<int>(std::floor(start.x())), cy = static_cast<int>(std::floor(start.y()));
@@ -173,9 +191,11 @@ std::vector<Sample> usable_samples(const MosaicRadiance& image, const Eigen::Vec
     for (int x = std::max(0, cx - reach_px); x <= std::min(image.width - 1, cx + reach_px); ++x) {
       const std::size_t i = image.index(x, y);
       if (image.flags[i] & (kPixelSaturated | kPixelDefective)) continue;
+      if (nearer_to_another({x + 0.5, y + 0.5}, start, others)) continue;
       const double value = image.value[i];
       brightest = std::max(brightest, value);
-      samples.push_back({x + 0.5, y + 0.5, value, std::sqrt(image.variance[i] + std::pow(kProfileError * value, 2)),
+      const double variance = image.variance[i];
+      samples.push_back({x + 0.5, y + 0.5, value, std::sqrt(variance + std::pow(kProfileError * value, 2)), std::sqrt(variance),
                          mosaic_channel(image.mosaic, x, y)});
     }
   }
@@ -233,11 +253,17 @@ Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& normal) {
 
 }  // namespace
 
+std::optional<Eigen::Vector2d> across_centre(const SphereInView& view, const Eigen::Vector2d& centre_px,
+                                             const Eigen::Vector3d& normal) {
+  const auto rows = Domain(HighlightShape{.sphere = view}).rows(centre_px.x(), centre_px.y());
+  return rows ? std::optional<Eigen::Vector2d>(*rows * normal) : std::nullopt;
+}
+
 std::optional<FittedHighlight> fit_highlight(const MosaicRadiance& image, const Eigen::Vector2d& start, int reach_px,
                                              const std::optional<ColourBalance>& balance, const HighlightShape& shape) {
   const bool one_amplitude = balance.has_value() || image.mosaic == Mosaic::Mono;
   const std::optional<ColourBalance> used = image.mosaic == Mosaic::Mono ? ColourBalance{1, 1, 1} : balance;
-  const std::vector<Sample> samples = usable_samples(image, start, reach_px);
+  const std::vector<Sample> samples = usable_samples(image, start, reach_px, shape.others_px);
   const PeakModel model(samples, used, Domain(shape));
   constexpr std::size_t kLeastSamples = 20;  // about twice the unknowns
   if (model.size() < kLeastSamples) return std::nullopt;
@@ -245,8 +271,11 @@ std::optional<FittedHighlight> fit_highlight(const MosaicRadiance& image, const 
   const auto freedom = static_cast<double>(model.size()) - static_cast<double>(p.size());
   if (!minimise(model, p)) return std::nullopt;
   const Eigen::MatrixXd j = model.jacobian(p);
-  const Eigen::MatrixXd covariance =
-      pseudo_inverse(j.transpose() * j) * std::max(1.0, model.residuals(p).squaredNorm() / freedom);
+  // The profile's error sets the weights, but it is no noise: over spheres and views it stays, and what is left of it in the
+  // centre is not for this fit to know.
+  const Eigen::MatrixXd inverse = pseudo_inverse(j.transpose() * j);
+  const Eigen::MatrixXd covariance = inverse * (j.transpose() * model.noise_shares().asDiagonal() * j) * inverse *
+                                     std::max(1.0, model.residuals(p).squaredNorm() / freedom);
   FittedHighlight fit;
   fit.pixel = p.head<2>();
   fit.sigma_px = std::sqrt(0.5 * (covariance(0, 0) + covariance(1, 1)));
@@ -257,7 +286,8 @@ std::optional<FittedHighlight> fit_highlight(const MosaicRadiance& image, const 
   } else if (balance) {
     fit.balance = *balance;
   }
-  const bool sane = std::isfinite(fit.sigma_px) && fit.amplitude > 0.0 && (fit.pixel - start).norm() < reach_px &&
+  const bool in_picture = fit.pixel.x() > 0.0 && fit.pixel.y() > 0.0 && fit.pixel.x() < image.width && fit.pixel.y() < image.height;
+  const bool sane = std::isfinite(fit.sigma_px) && in_picture && fit.amplitude > 0.0 && (fit.pixel - start).norm() < reach_px &&
                     fit.width_px < reach_px;
   return sane ? std::optional(fit) : std::nullopt;
 }

@@ -12,7 +12,8 @@
 // its distance from the sphere's, always inwards, which over six spheres adds up to millimetres of the light's
 // distance. It holds for spheres whose roughness, not the lens's blur, makes the width.
 //
-// Several emitters whose reflections run into one (a ring flash) are fitted as that many equal peaks at known offsets.
+// Several emitters whose reflections run into one (a ring flash, a lamp of some size) are fitted as that many equal peaks at
+// known offsets.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,7 +31,7 @@ using ColourBalance = std::array<double, 3>;  // a lamp's response per mosaic co
 
 struct FittedHighlight {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
-  double sigma_px = 0;   // per axis, from the fit's covariance scaled by its residuals
+  double sigma_px = 0;   // per axis: the pixels' noise carried through the fit, more where its residuals are beyond what it allows
   double amplitude = 0;  // of green or mono, in the image's unit
   ColourBalance balance{1, 1, 1};
   double width_px = 0;  // 1 / sqrt(det L): a scale radius
@@ -44,8 +45,14 @@ struct SphereInView {
 struct HighlightShape {
   std::optional<SphereInView> sphere;  // symmetric on this sphere; none: in the picture's plane
   std::vector<Eigen::Vector2d>
-      offsets_px{};  // of equal peaks about their common centre, in the picture's plane; none: one peak
+      offsets_px{};  // of equal peaks about the centre, in t's plane; none: one peak
+  std::vector<Eigen::Vector2d> others_px{};  // other highlights; pixels nearer to one of them than to the start are left out
 };
+
+// t of a normal on the sphere when the highlight's centre is at the pixel: what offsets_px wants there. None if the pixel is
+// off the sphere.
+std::optional<Eigen::Vector2d> across_centre(const SphereInView& view, const Eigen::Vector2d& centre_px,
+                                             const Eigen::Vector3d& normal);
 
 // Fits within `reach_px` around `start`. Without a balance the three amplitudes are free (mosaics only). None if too
 // few usable pixels are there, the fit does not converge, or it ends outside the window or wider than it.

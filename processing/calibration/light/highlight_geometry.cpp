@@ -88,6 +88,20 @@ Eigen::Vector2d ring_highlight_pixel(const CameraModel& camera, const MirrorSphe
   return sum / static_cast<double>(pixels.size());
 }
 
+std::vector<Eigen::Vector3d> places_on_disc(const Eigen::Vector3d& light, const EmitterDisc& emitter) {
+  const Eigen::Vector3d normal = (emitter.faces - light).normalized();
+  const Eigen::Vector3d across = normal.unitOrthogonal(), other = normal.cross(across);
+  std::vector<Eigen::Vector3d> places;
+  // A third of the disc within 0.577 of its radius, the rest outside; mean squared radii 1/6 and 2/3.
+  for (const auto& [count, square] : {std::pair{4, 1.0 / 6.0}, std::pair{8, 2.0 / 3.0}}) {
+    for (int i = 0; i < count; ++i) {
+      const double angle = 2.0 * std::numbers::pi * (i + 0.5) / count;
+      places.push_back(light + emitter.radius_m * std::sqrt(square) * (std::cos(angle) * across + std::sin(angle) * other));
+    }
+  }
+  return places;
+}
+
 Eigen::Vector2d disc_highlight_pixel(const CameraModel& camera, const MirrorSphere& sphere,
                                      const Eigen::Vector3d& light, const EmitterDisc& emitter) {
   if (!(emitter.radius_m > 0.0)) return highlight_pixel(camera, sphere, light);

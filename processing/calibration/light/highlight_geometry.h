@@ -41,6 +41,8 @@ struct EmitterDisc {
   double radius_m = 0;  // 0: a point
   Eigen::Vector3d faces = Eigen::Vector3d::UnitZ();  // camera's frame, m
 };
+// Twelve places on it that stand for equal areas.
+std::vector<Eigen::Vector3d> places_on_disc(const Eigen::Vector3d& light, const EmitterDisc& emitter);
 Eigen::Vector2d disc_highlight_pixel(const CameraModel& camera, const MirrorSphere& sphere,
                                      const Eigen::Vector3d& light, const EmitterDisc& emitter);
 

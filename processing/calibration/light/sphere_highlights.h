@@ -21,14 +21,8 @@ struct Blob {
 // Compact things brighter than their surroundings and well above the noise, at most 15 px across; the brightest first.
 std::vector<Blob> compact_blobs(const MosaicRadiance& image, std::size_t most);
 
-// The `count` blobs that can be ring highlights of spheres on a line: in undistorted directions such points lie on a
-// straight line, at places that a projective map of 0, 1, 2, … gives, and are about equally bright, since
-// the flash is about equally far from all. In order, beginning with the leftmost (topmost if upright). None if no such
-// row is found.
-std::optional<std::vector<Blob>> find_sphere_row(const std::vector<Blob>& blobs, const CameraModel& camera, int count);
-
-// The point light's highlight on each sphere of the line, at most one each: the brightest compact thing on its disc.
-// Spheres without one (the light is hidden from them, or a fit failed) are left out.
+// Highlights of point lights on each sphere of the line: the brightest compact thing on its disc, then what is at least a
+// thirtieth as bright (the spheres' images of their neighbours and of the bench are dimmer), at most six. Spheres without any are left out.
 std::vector<std::pair<int, Blob>> find_point_highlights(const std::vector<Blob>& blobs, const CameraModel& camera,
                                                         const SphereLine& line);
 

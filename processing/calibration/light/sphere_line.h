@@ -30,5 +30,9 @@ struct SphereLine {
 // rays: at least three unit directions in the camera's frame, in order along the line. Throws BadInput if there are
 // fewer, or if rays coincide or put a sphere behind the camera.
 SphereLine sphere_line_from_rays(const std::vector<Eigen::Vector3d>& rays, double spacing_m, double radius_m);
+// The same where some spheres are not seen: each ray's place along the line, ascending. The line has as many spheres as the last
+// one's place says.
+SphereLine sphere_line_from_rays(const std::vector<Eigen::Vector3d>& rays, const std::vector<int>& places, double spacing_m,
+                                 double radius_m);
 
 }  // namespace lumitexel

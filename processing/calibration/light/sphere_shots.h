@@ -14,16 +14,16 @@ namespace lumitexel {
 
 struct SphereHighlights {
   std::vector<HighlightPixel> rings;                // one a sphere, pooled over the views
-  std::vector<std::vector<HighlightPixel>> points;  // by view
-  SphereLine line;                                  // a start: from the rings alone
+  std::vector<std::vector<HighlightPixel>> points;  // by view: the rig's light's
+  std::vector<std::vector<std::vector<HighlightPixel>>> strays;  // by view: those of other lights, sorted by light
+  SphereLine line;                                  // a start: from the rings alone; fewer spheres than the rig's if not all are seen
 };
 
-// One entry a view. The spheres stand still, so their ring highlights are pooled over all views (median; a view in
-// which the row is not found or stands elsewhere does not count). Throws Error if no view shows the row of spheres.
+// One entry a view. How: ring_row.h (which throws Error if too few spheres are seen) and point_highlights.h.
 SphereHighlights read_sphere_highlights(const RadianceReader& reader, const std::vector<SphereShots>& views,
                                         const CameraModel& camera, const RigDescription& rig, Progress& progress);
 
-// solve_lights with what the rig's description says of the ring flash. In the camera's frame.
+// solve_lights with what the rig's description says of the ring flash and of the lamp's size. In the camera's frame.
 LightSolution measure_lights(const SphereHighlights& seen, const CameraModel& camera, const RigDescription& rig,
                              const std::optional<LensMatrix>& lens_covariance = {});
 

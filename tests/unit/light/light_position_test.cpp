@@ -92,6 +92,20 @@ INSTANTIATE_TEST_SUITE_P(SphereLine, LineDirections,
                                          Eigen::Vector3d(0.98, 0.03, 0.2),
                                          Eigen::Vector3d(0.1, 0.3, -1)));  // almost in depth
 
+TEST(SphereLine, IsRecoveredExactlyWithSpheresMissing) {
+  const SphereLine truth = test_line();
+  for (const std::vector<int>& places : {std::vector{0, 1, 3, 5}, std::vector{0, 2, 3}, std::vector{1, 4, 5}}) {
+    std::vector<Eigen::Vector3d> rays;
+    for (const int k : places) rays.push_back(truth.sphere(k).centre.normalized());
+    const SphereLine line = sphere_line_from_rays(rays, places, kSpacing_m, kRadius_m);
+    EXPECT_EQ(line.count, places.back() + 1);
+    for (int k = 0; k < 6; ++k) EXPECT_LT((line.sphere(k).centre - truth.sphere(k).centre).norm(), 1e-10) << k;
+  }
+  const std::vector<Eigen::Vector3d> rays(3, Eigen::Vector3d::UnitZ());
+  EXPECT_THROW(sphere_line_from_rays(rays, {0, 2, 2}, kSpacing_m, kRadius_m), BadInput);
+  EXPECT_THROW(sphere_line_from_rays(rays, {0, 1}, kSpacing_m, kRadius_m), BadInput);
+}
+
 TEST(SphereLine, RefusesWhatIsNoLine) {
   EXPECT_THROW(sphere_line_from_rays({Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitZ()}, 0.05, 0.02), BadInput);
   EXPECT_THROW(sphere_line_from_rays(std::vector<Eigen::Vector3d>(6, Eigen::Vector3d::UnitZ()), 0.05, 0.02), BadInput);

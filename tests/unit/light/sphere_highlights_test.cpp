@@ -1,4 +1,5 @@
-#include "processing/calibration/light/sphere_highlights.h"
+#include "processing/calibration/light/point_highlights.h"
+#include "processing/calibration/light/sphere_row.h"
 
 #include <gtest/gtest.h>
 
@@ -181,6 +182,48 @@ TEST(SphereRow, IsNotInventedWhereASphereIsMissing) {
   EXPECT_FALSE(find_sphere_row(compact_blobs(picture(Mosaic::Rggb, spots, 1), 80), camera(), 6));
 }
 
+// One or two of six hidden, alone and among sparkles: the row is among those found, at its places.
+TEST(SphereRow, WithGapsIsFoundAtItsPlaces) {
+  const auto is_the_row = [](const PartialRow& row, const std::vector<int>& places) {
+    if (row.members.size() != places.size()) return false;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const auto& [place, blob] = row.members[i];
+      if (place != places[i] - places[0]) return false;
+      if (!((blob.pixel - camera().project(line().sphere(places[i]).centre)).norm() < 1.0)) return false;
+    }
+    return true;
+  };
+  for (const std::vector<int>& places : {std::vector{0, 1, 3, 5}, std::vector{1, 2, 3, 4}, std::vector{0, 2, 3, 4, 5}}) {
+    std::vector<Spot> spots;
+    for (const int k : places) spots.push_back({camera().project(line().sphere(k).centre), 5000.0, 1.0});
+    const auto alone = find_partial_rows(compact_blobs(picture(Mosaic::Rggb, spots, 1), 80), camera(), 6, 12);
+    ASSERT_FALSE(alone.empty());
+    const auto wanted = [&](const PartialRow& row) { return is_the_row(row, places); };
+    EXPECT_TRUE(std::any_of(alone.begin(), alone.end(), wanted));
+    EXPECT_EQ(alone[0].members.size(), places.size());
+    const std::vector<Spot> sparkles = row_and_sparkles(1);
+    spots.insert(spots.end(), sparkles.begin() + 6, sparkles.begin() + 26);
+    const auto rows = find_partial_rows(compact_blobs(picture(Mosaic::Rggb, spots, 1), 80), camera(), 6, 1000);
+    EXPECT_TRUE(std::any_of(rows.begin(), rows.end(), wanted));
+  }
+  EXPECT_EQ(least_of_row(6), 4);
+  EXPECT_EQ(least_of_row(9), 5);
+}
+
+// Of a steep line, four that look like four others of one with the opposite slope.
+TEST(SphereRow, WhoseGapsReadTwoWaysIsLeftOut) {
+  SphereLine steep = line();
+  steep.first_centre = {-0.05, -0.03, 0.35};
+  steep.direction = Eigen::Vector3d(0.4, 0.1, 0.9).normalized();
+  for (const std::vector<int>& places : {std::vector{0, 1, 3, 5}, std::vector{0, 1, 2, 3, 5}}) {
+    std::vector<Spot> spots;
+    for (const int k : places) spots.push_back({camera().project(steep.sphere(k).centre), 5000.0, 1.0});
+    const auto rows = find_partial_rows(compact_blobs(picture(Mosaic::Rggb, spots, 1), 80), camera(), 6, 12);
+    const bool found = std::any_of(rows.begin(), rows.end(), [&](const PartialRow& row) { return row.members.size() == places.size(); });
+    EXPECT_EQ(found, places.size() == 5);
+  }
+}
+
 TEST(CompactBlobs, LeaveBroadThingsOut) {
   const auto blobs =
       compact_blobs(picture(Mosaic::Mono, {{{100, 100}, 5000.0, 1.2}, {{250, 150}, 5000.0, 15.0}}, 1), 80);
@@ -198,9 +241,20 @@ TEST(PointHighlights, BelongToTheirSpheresTheBrightestFirst) {
   }
   spots.push_back({{200, 220}, 20'000.0, 1.0});  // the object's own
   const auto found = find_point_highlights(compact_blobs(picture(Mosaic::Rggb, spots, 3), 100), camera(), line());
-  ASSERT_EQ(found.size(), 4u);
-  for (const auto& [sphere, blob] : found) {
-    EXPECT_LT((blob.pixel - highlight_pixel(camera(), line().sphere(sphere), light)).norm(), 1.0) << sphere;
+  ASSERT_EQ(found.size(), 8u);  // each sphere's own, then the reflection
+  SeenInView seen;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const auto& [sphere, blob] = found[i];
+    const bool own = (blob.pixel - highlight_pixel(camera(), line().sphere(sphere), light)).norm() < 1.0;
+    EXPECT_EQ(own, i % 2 == 0) << sphere;
+    seen.push_back({sphere, blob, FittedHighlight{.pixel = blob.pixel, .sigma_px = 0.05}});
+  }
+  // No light explains the reflections of neighbours, which are left out.
+  const SortedHighlights sorted = sort_highlights(camera(), line(), seen, light + Eigen::Vector3d(0.03, 0.0, 0.02), 0.25);
+  ASSERT_EQ(sorted.own.size(), 4u);
+  EXPECT_TRUE(sorted.strays.empty());
+  for (const SeenHighlight& highlight : sorted.own) {
+    EXPECT_LT((highlight.blob.pixel - highlight_pixel(camera(), line().sphere(highlight.sphere), light)).norm(), 1.0);
   }
 }
 

@@ -1,0 +1,45 @@
+// Highlights in the shots of all views: found, fitted, and fitted again with the colours that they have in common.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "processing/calibration/light/highlight_fit.h"
+#include "processing/calibration/light/highlight_geometry.h"
+#include "processing/calibration/light/sphere_highlights.h"
+#include "processing/calibration/radiance_reader.h"
+
+namespace lumitexel {
+
+struct SeenHighlight {
+  int sphere = 0;  // place along the line
+  Blob blob;
+  std::optional<FittedHighlight> fit;
+};
+using SeenInView = std::vector<SeenHighlight>;
+
+using RecordOf = std::function<const FrameRecord&(std::size_t view)>;
+using FindIn = std::function<SeenInView(std::size_t view, const MosaicRadiance&)>;
+// Called from several threads.
+using ShapeOf = std::function<HighlightShape(std::size_t view, const SeenHighlight&)>;
+
+// Fits every highlight of one view; without a balance, with free colours. What lies nearer to another of the view's highlights
+// is left to that one.
+void fit_highlights(const MosaicRadiance& image, std::size_t view, const std::optional<ColourBalance>& balance,
+                    const ShapeOf& shape, SeenInView& seen);
+
+// Finds highlights in every view's shot and fits them with free colours. step: called once a shot.
+std::vector<SeenInView> find_highlights(std::size_t views, const RadianceReader& reader, const RecordOf& record,
+                                        const FindIn& find, const ShapeOf& shape, const std::function<void()>& step);
+
+// Fits them again, with the lamp's balance of colours that all of them have in common.
+void refit_highlights(const RadianceReader& reader, const RecordOf& record, const ShapeOf& shape,
+                      std::vector<SeenInView>& seen);
+
+inline constexpr int kHighlightReach_px = 8;  // of a fit's window about the blob
+
+// A fit's place and what is to be believed of it.
+HighlightPixel highlight_pixel_of(int sphere, const FittedHighlight& fit);
+
+}  // namespace lumitexel

@@ -1,0 +1,142 @@
+#include "processing/calibration/light/point_highlights.h"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
+#include "processing/calibration/light/highlight_assignment.h"
+
+namespace lumitexel {
+namespace {
+
+bool some_sphere_has_two(const SeenInView& seen) {
+  std::set<int> spheres;
+  return std::any_of(seen.begin(), seen.end(), [&](const SeenHighlight& h) { return !spheres.insert(h.sphere).second; });
+}
+
+std::vector<HighlightPixel> fitted(const SeenInView& seen) {
+  std::vector<HighlightPixel> pixels;
+  for (const SeenHighlight& highlight : seen) {
+    if (highlight.fit) pixels.push_back(highlight_pixel_of(highlight.sphere, *highlight.fit));
+  }
+  return pixels;
+}
+
+// Those of `seen` that the assignment took for one light.
+SeenInView members(const SeenInView& seen, const std::vector<HighlightPixel>& chosen) {
+  SeenInView result;
+  for (const SeenHighlight& highlight : seen) {
+    const bool taken = highlight.fit && std::any_of(chosen.begin(), chosen.end(), [&](const HighlightPixel& pixel) {
+      return pixel.sphere == highlight.sphere && pixel.pixel == highlight.fit->pixel;
+    });
+    if (taken) result.push_back(highlight);
+  }
+  return result;
+}
+
+// Highlights of no assigned light, at most one a sphere, where a light at `expected` or within its reach would have one.
+SeenInView near_expected(const CameraModel& camera, const SphereLine& line, const SeenInView& seen,
+                         const std::vector<HighlightPixel>& left_over, const Eigen::Vector3d& expected, double reach_m) {
+  SeenInView result;
+  const Eigen::Vector3d aside = reach_m * expected.unitOrthogonal();
+  for (int k = 0; k < line.count; ++k) {
+    const Eigen::Vector2d place = highlight_pixel(camera, line.sphere(k), expected);
+    double nearest = (highlight_pixel(camera, line.sphere(k), expected + aside) - place).norm();
+    std::optional<SeenHighlight> best;
+    for (const SeenHighlight& highlight : members(seen, left_over)) {
+      const double distance = (highlight.fit->pixel - place).norm();
+      if (highlight.sphere != k || !(distance < nearest)) continue;
+      nearest = distance;
+      best = highlight;
+    }
+    if (best) result.push_back(*best);
+  }
+  return result;
+}
+
+// A lamp of some size is seen as so many equal peaks about its reflection's centroid; the description is good enough for where
+// they lie about it.
+HighlightShape lamp_shape(const SphereInView& view, const Eigen::Vector3d& light, const EmitterDisc& lamp) {
+  HighlightShape shape{.sphere = view};
+  if (!(lamp.radius_m > 0.0)) return shape;
+  const Eigen::Vector2d centre = disc_highlight_pixel(view.camera, view.sphere, light, lamp);
+  for (const Eigen::Vector3d& place : places_on_disc(light, lamp)) {
+    const Eigen::Vector3d point = mirror_point(view.sphere, Eigen::Vector3d::Zero(), place);
+    const auto offset = across_centre(view, centre, (point - view.sphere.centre).normalized());
+    if (offset) shape.offsets_px.push_back(*offset);
+  }
+  return shape;
+}
+
+bool has_close_rival(const SeenHighlight& one, const SeenInView& seen) {
+  return std::any_of(seen.begin(), seen.end(), [&](const SeenHighlight& other) {
+    const double distance = (one.blob.pixel - other.blob.pixel).norm();
+    return other.sphere == one.sphere && distance > 0.0 && distance < kHighlightReach_px;
+  });
+}
+
+SeenInView without_close_rivals(const SeenInView& seen) {
+  SeenInView result;
+  for (const SeenHighlight& highlight : seen) {
+    if (!has_close_rival(highlight, seen)) result.push_back(highlight);
+  }
+  return result;
+}
+
+}  // namespace
+
+SortedHighlights sort_highlights(const CameraModel& camera, const SphereLine& line, const SeenInView& all,
+                                 const Eigen::Vector3d& expected, double reach_m) {
+  if (!some_sphere_has_two(all)) return {all, {}};
+  const SeenInView seen = without_close_rivals(all);
+  const HighlightAssignment assignment = assign_highlights(camera, line, fitted(seen));
+  std::optional<std::size_t> own;
+  double nearest = reach_m;
+  for (std::size_t i = 0; i < assignment.lights.size(); ++i) {
+    const double distance = (assignment.lights[i].position - expected).norm();
+    if (!(distance < nearest)) continue;
+    nearest = distance;
+    own = i;
+  }
+  SortedHighlights sorted;
+  for (std::size_t i = 0; i < assignment.lights.size(); ++i) {
+    const SeenInView light = members(seen, assignment.lights[i].highlights);
+    if (i == own) {
+      sorted.own = light;
+    } else {
+      sorted.strays.push_back(light);
+    }
+  }
+  if (!own) sorted.own = near_expected(camera, line, seen, assignment.left_over, expected, reach_m);
+  return sorted;
+}
+
+PointHighlights read_point_highlights(const RadianceReader& reader, const RecordOf& record, const CameraModel& camera,
+                                      const SphereLine& line, const ExpectedLights& expected,
+                                      const std::function<void()>& step) {
+  const ShapeOf on_sphere = [&](std::size_t view, const SeenHighlight& highlight) {
+    return lamp_shape({camera, line.sphere(highlight.sphere)}, expected.positions[view], expected.lamp);
+  };
+  constexpr std::size_t kAll = 10'000;
+  const FindIn find = [&](std::size_t, const MosaicRadiance& image) {
+    SeenInView seen;
+    for (const auto& [sphere, blob] : find_point_highlights(compact_blobs(image, kAll), camera, line)) {
+      seen.push_back({sphere, blob, std::nullopt});
+    }
+    return seen;
+  };
+  const std::vector<SeenInView> all = find_highlights(expected.positions.size(), reader, record, find, on_sphere, step);
+  std::vector<SeenInView> own;
+  PointHighlights result;
+  for (std::size_t v = 0; v < all.size(); ++v) {
+    SortedHighlights sorted = sort_highlights(camera, line, all[v], expected.positions[v], expected.reach_m);
+    own.push_back(std::move(sorted.own));
+    std::vector<std::vector<HighlightPixel>>& strays = result.strays.emplace_back();
+    for (const SeenInView& stray : sorted.strays) strays.push_back(fitted(stray));
+  }
+  refit_highlights(reader, record, on_sphere, own);
+  for (const SeenInView& view : own) result.own.push_back(fitted(view));
+  return result;
+}
+
+}  // namespace lumitexel
