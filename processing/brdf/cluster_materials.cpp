@@ -11,7 +11,9 @@
 namespace lumitexel {
 namespace {
 
-constexpr int kSearchRounds = 24, kFinalRounds = 4;  // of expectation-maximisation
+// Of log likelihood a sample and round. What is left after the last round is a multiple of its change, and should be small beside one in all.
+constexpr double kSearchSettled = 1e-4, kFinalSettled = 1e-6;
+constexpr int kSearchRounds = 24, kFinalRounds = 40;  // of expectation-maximisation
 constexpr int kMostExtra = 8;  // materials beyond those wanted that splitting may make
 
 std::vector<int> most_probable(const Responsibilities& r) {
@@ -75,7 +77,7 @@ Search search_with(bool estimate_error, const Observations& observations, const 
   const MaterialFit whole = fit_material(samples_of(observations, selection), observations.channels, nullptr, search.fit);
   search.whole = whole.model;
   search.mixture = split_materials(whole, observations, selection, most, search.fit);
-  maximise_expectation(search.mixture, observations, selection, search.fit, kSearchRounds);
+  maximise_expectation(search.mixture, observations, selection, search.fit, {kSearchRounds, kSearchSettled});
   merge_materials(search.mixture, observations, selection, {options.materials, search.fit}, report);
   return search;
 }
@@ -116,11 +118,12 @@ Clustering cluster_materials(const Observations& observations, const LumitexelLi
   result.estimated_errors = settled.estimate_error;
   result.fit = settled;
   std::vector<BrdfFit> fits;
-  choose_lobes(mixture, observations, selection, r, settled, fits);
+  // The search went with one lobe each: more come in here, so that the mixture settles with them.
+  if (settled.most_lobes > search.fit.most_lobes) choose_lobes(mixture, observations, selection, r, settled, fits);
   const LumitexelList all = with_samples(observations);
   const std::vector<int> label = most_probable(responsibilities(mixture, observations, all));
   const LumitexelList finalists = members_of_all(label, all, mixture.materials.size(), options.final_lumitexels);
-  r = maximise_expectation(mixture, observations, finalists, settled, kFinalRounds);
+  r = maximise_expectation(mixture, observations, finalists, settled, {kFinalRounds, kFinalSettled});
   choose_lobes(mixture, observations, finalists, r, settled, fits);
   result.single = fit_material(samples_of(observations, thinned(all, options.final_lumitexels)), observations.channels, &search.whole.brdf,
                                settled).model;
