@@ -7,7 +7,9 @@
 namespace lumitexel {
 namespace {
 
-constexpr int kFinalRounds = 4;  // of expectation-maximisation
+// Of log likelihood a sample and round. What is left after the last round is a multiple of its change, and should be small beside one in all.
+constexpr double kFinalSettled = 1e-6;
+constexpr int kFinalRounds = 40;  // of expectation-maximisation
 
 std::vector<int> most_probable(const Responsibilities& r) {
   std::vector<int> label(r.lumitexels());
@@ -74,11 +76,12 @@ Clustering cluster_materials(const Observations& observations, const LumitexelLi
   result.errors = search.errors;
   result.fit = settled;
   std::vector<BrdfFit> fits;
-  choose_lobes(mixture, observations, selection, r, settled, fits);
+  // The search went with one lobe each: more come in here, so that the mixture settles with them.
+  if (settled.most_lobes > search.fit.most_lobes) choose_lobes(mixture, observations, selection, r, settled, fits);
   const LumitexelList all = with_samples(observations);
   const std::vector<int> label = most_probable(responsibilities(mixture, observations, all));
   const LumitexelList finalists = members_of_all(label, all, mixture.materials.size(), options.final_lumitexels);
-  r = maximise_expectation(mixture, observations, finalists, settled, kFinalRounds);
+  r = maximise_expectation(mixture, observations, finalists, settled, {kFinalRounds, kFinalSettled});
   choose_lobes(mixture, observations, finalists, r, settled, fits);
   result.single = fit_material(samples_of(observations, thinned(all, options.final_lumitexels)), observations.channels, &search.whole.brdf,
                                settled).model;

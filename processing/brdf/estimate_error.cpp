@@ -7,12 +7,17 @@
 #include <vector>
 
 #include "processing/brdf/ordered_sum.h"
+#include "processing/brdf/prepared_brdf.h"
 
 namespace lumitexel {
 namespace {
 
 constexpr std::size_t kFewestSamples = 30;
-constexpr int kRounds = 4;
+constexpr int kRounds = 4, kRoundsMore = 2;  // from where the start was, and after each change of the tails
+constexpr std::size_t kSamplesForTails = 6000;  // which kind of tails, so many say
+constexpr int kOutlierRounds = 12;  // the two normal distributions' shares settle slowly
+constexpr double kFirstShare = 0.02, kFirstScale = 8.0;  // where they begin
+constexpr double kLeastShare = 1e-5, kMostShare = 0.25, kLeastScale = 2.0, kMostScale = 1e3;
 constexpr double kFreedoms[] = {2.5, 3.0, 4.0, 6.0, 10.0, 30.0, ErrorModel::kGaussian};
 constexpr double kLeastRelative = 1e-4, kMostRelative = 1.0;
 constexpr double kLeastFloorShare = 1e-4;  // of the median reflectance
@@ -31,15 +36,19 @@ struct Residuals {
 
 Residuals residuals_of(const Brdf& brdf, FitSamples samples) {
   Residuals residuals{brdf.channels, std::vector<ChannelValues>(samples.size()), samples};
+  const PreparedBrdf prepared(brdf);
   for_each_block(samples.size(), [&](std::size_t s) {
-    residuals.predicted[s] = predicted_reflectance(brdf, samples[s].observation->geometry);
+    residuals.predicted[s] = predicted_reflectance(prepared, samples[s].observation->geometry);
   });
   return residuals;
 }
 
+// Of some thousand samples.
 double median_reflectance(const Residuals& residuals) {
   std::vector<double> values;
-  for (const FitSample& sample : residuals.samples) {
+  const std::size_t stride = residuals.samples.size() / 2000 + 1;
+  for (std::size_t s = 0; s < residuals.samples.size(); s += stride) {
+    const FitSample& sample = residuals.samples[s];
     for (int c = 0; c < residuals.channels; ++c) {
       values.push_back(std::abs(static_cast<double>(sample.observation->reflectance[static_cast<std::size_t>(c)])));
     }
@@ -62,33 +71,44 @@ struct Moments {
   Eigen::Vector2d right = Eigen::Vector2d::Zero();
   ChannelMatrix products = ChannelMatrix::Zero(kMaxChannels, kMaxChannels);  // of scaled residuals
   double weight = 0;
+  double outliers = 0, outlier_squares = 0;  // of the wider normal distribution: samples, and their squared whitened residuals
   Moments& operator+=(const Moments& other) {
     matrix += other.matrix;
     right += other.right;
     products += other.products;
     weight += other.weight;
+    outliers += other.outliers;
+    outlier_squares += other.outlier_squares;
     return *this;
   }
 };
 
 Moments moments(const Residuals& residuals, const ErrorModel& error) {
-  return ordered_sum(residuals.samples.size(), Moments{}, [&](std::size_t s, Moments& sums) {
+  Moments all = ordered_sum(residuals.samples.size(), Moments{}, [&](std::size_t s, Moments& sums) {
     const Observation& sample = *residuals.samples[s].observation;
-    const double tail = robust_weight(error, sample_misfit(error, sample, residuals.channels, residuals.predicted[s]), residuals.channels);
-    const double share = residuals.samples[s].share;
-    Eigen::Matrix<double, kMaxChannels, 1> scaled = Eigen::Matrix<double, kMaxChannels, 1>::Zero();
+    const ScaledResiduals scaled = scaled_residuals(error, sample, residuals.channels, residuals.predicted[s]);
+    const SampleMisfit misfit = sample_misfit(error, scaled, residuals.channels);
+    const double share = residuals.samples[s].share, inlier = inlier_probability(error, misfit, residuals.channels);
+    const double tail = error.outlier_share > 0.0 ? weight_of_inlier(error, inlier) : robust_weight(error, misfit, residuals.channels);
+    sums.outliers += share * (1.0 - inlier);
+    sums.outlier_squares += share * (1.0 - inlier) * misfit.squares;
     for (int c = 0; c < residuals.channels; ++c) {
       const auto channel = static_cast<std::size_t>(c);
-      const double predicted = residuals.predicted[s][channel], r = residuals.residual(s, channel);
-      const double variance = error.variance(predicted, residuals.noise(s, channel));
-      const Eigen::Vector2d by(predicted * predicted, 1.0);
-      sums.matrix += share / (variance * variance) * by * by.transpose();
-      sums.right += share / (variance * variance) * (tail * r * r - residuals.noise(s, channel)) * by;
-      scaled[c] = r / std::sqrt(variance);
+      const double square = residuals.predicted[s][channel] * residuals.predicted[s][channel], r = residuals.residual(s, channel);
+      const double variance = scaled.scale[channel] * scaled.scale[channel], w = share / (variance * variance);
+      const double excess = w * (tail * r * r - residuals.noise(s, channel));
+      sums.matrix(0, 0) += w * square * square;
+      sums.matrix(0, 1) += w * square;
+      sums.matrix(1, 1) += w;
+      sums.right[0] += excess * square;
+      sums.right[1] += excess;
+      for (int d = 0; d <= c; ++d) sums.products(c, d) += share * tail * scaled.over_scale[channel] * scaled.over_scale[static_cast<std::size_t>(d)];
     }
-    sums.products += share * tail * scaled * scaled.transpose();
     sums.weight += share;
   });
+  all.matrix(1, 0) = all.matrix(0, 1);
+  all.products = all.products.selfadjointView<Eigen::Lower>();
+  return all;
 }
 
 // Both coefficients non-negative; where the two cannot be told apart the relative one takes it all.
@@ -119,6 +139,13 @@ ChannelMatrix correlation_of(const Moments& sums, int channels) {
 
 double least_floor(const Residuals& residuals) { return std::max(1e-12, kLeastFloorShare * median_reflectance(residuals)); }
 
+void refine_outliers(const Moments& sums, int channels, ErrorModel& error) {
+  if (error.outlier_share <= 0.0 || sums.weight <= 0.0) return;
+  error.outlier_share = std::clamp(sums.outliers / sums.weight, kLeastShare, kMostShare);
+  if (sums.outliers <= 0.0) return;
+  error.outlier_scale = std::clamp(std::sqrt(sums.outlier_squares / (sums.outliers * channels)), kLeastScale, kMostScale);
+}
+
 void refine(const Residuals& residuals, double least_floor, int rounds, ErrorModel& error) {
   for (int round = 0; round < rounds; ++round) {
     const Moments sums = moments(residuals, error);
@@ -127,6 +154,7 @@ void refine(const Residuals& residuals, double least_floor, int rounds, ErrorMod
     error.relative = std::clamp(std::sqrt(scales[0]), kLeastRelative, kMostRelative);
     error.floor = std::max(least_floor, std::sqrt(scales[1]));
     error.set_correlation(correlation_of(sums, residuals.channels));
+    refine_outliers(sums, residuals.channels, error);
   }
 }
 
@@ -169,34 +197,83 @@ std::size_t nearest_freedom(double freedom) {
   return i;
 }
 
+struct Estimate {
+  ErrorModel error;
+  double deviance = 0;
+};
+
+// From the tails of the start towards heavier or lighter ones, for as long as the likelihood rises.
+Estimate with_students_tails(const Residuals& residuals, double floor, const ErrorModel& start) {
+  const auto with_freedom = [&](std::size_t i, const ErrorModel& from, int rounds) {
+    Estimate estimate{from};
+    estimate.error.freedom = kFreedoms[i];
+    estimate.error.outlier_share = 0.0;
+    refine(residuals, floor, rounds, estimate.error);
+    estimate.deviance = total_deviance(residuals, estimate.error);
+    return estimate;
+  };
+  const std::size_t at = nearest_freedom(start.freedom);
+  Estimate best = with_freedom(at, start, kRounds);
+  for (const int step : {1, -1}) {
+    for (std::size_t next = at + static_cast<std::size_t>(step); next < std::size(kFreedoms); next += static_cast<std::size_t>(step)) {
+      const Estimate trial = with_freedom(next, best.error, kRoundsMore);
+      if (!(trial.deviance < best.deviance)) break;
+      best = trial;
+    }
+  }
+  return best;
+}
+
+Estimate with_outliers(const Residuals& residuals, double floor, const ErrorModel& start) {
+  Estimate estimate{start};
+  if (start.outlier_share <= 0.0) {
+    estimate.error.freedom = ErrorModel::kGaussian;
+    estimate.error.outlier_share = kFirstShare;
+    estimate.error.outlier_scale = kFirstScale;
+  }
+  refine(residuals, floor, kOutlierRounds, estimate.error);
+  estimate.deviance = total_deviance(residuals, estimate.error);
+  return estimate;
+}
+
+ErrorModel with_likeliest_tails(const Residuals& residuals, const ErrorModel& start) {
+  const double floor = least_floor(residuals);
+  const Estimate students = with_students_tails(residuals, floor, start);
+  if (students.error.freedom >= ErrorModel::kGaussian) return students.error;  // no tails at all
+  const Estimate outliers = with_outliers(residuals, floor, start.outlier_share > 0.0 ? start : students.error);
+  // One number more than Student's tails have, paid for as in fit_material.h.
+  double count = 0.0;
+  for (const FitSample& sample : residuals.samples) count += sample.share;
+  const double independence = independence_of(residuals, outliers.error), price = std::log(std::max(2.0, count * independence));
+  return independence * (students.deviance - outliers.deviance) > price ? outliers.error : students.error;
+}
+
+// Every so manieth, about `most` samples; the list ends with whole lumitexels.
+std::vector<FitSample> whole_lumitexels(FitSamples samples, std::size_t most) {
+  const std::size_t stride = samples.size() / most + 1;
+  std::vector<FitSample> some;
+  std::size_t lumitexels = 0;
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    if (s > 0 && samples[s].lumitexel != samples[s - 1].lumitexel) ++lumitexels;
+    if (lumitexels % stride == 0) some.push_back(samples[s]);
+  }
+  return some;
+}
+
 }  // namespace
 
 ErrorModel estimate_error_model(const Brdf& brdf, FitSamples samples, const ErrorModel& start) {
   if (samples.size() < kFewestSamples) return start;
+  const std::vector<FitSample> some = whole_lumitexels(samples, kSamplesForTails);
+  ErrorModel best = with_likeliest_tails(residuals_of(brdf, some), start);
   const Residuals residuals = residuals_of(brdf, samples);
-  const double floor = least_floor(residuals);
-  // From the tails of the start towards heavier or lighter ones, for as long as the likelihood rises.
-  const auto with_freedom = [&](std::size_t i, const ErrorModel& from) {
-    ErrorModel error = from;
-    error.freedom = kFreedoms[i];
-    refine(residuals, floor, kRounds, error);
-    return error;
-  };
-  std::size_t at = nearest_freedom(start.freedom);
-  ErrorModel best = with_freedom(at, start);
-  double best_deviance = total_deviance(residuals, best);
-  for (const int step : {1, -1}) {
-    for (std::size_t next = at + static_cast<std::size_t>(step); next < std::size(kFreedoms); next += static_cast<std::size_t>(step)) {
-      const ErrorModel trial = with_freedom(next, best);
-      const double deviance = total_deviance(residuals, trial);
-      if (!(deviance < best_deviance)) break;
-      best = trial;
-      best_deviance = deviance;
-      at = next;
-    }
-  }
+  if (some.size() < samples.size()) refine(residuals, least_floor(residuals), kRoundsMore, best);
   best.independence = independence_of(residuals, best);
   return best;
+}
+
+double independence_of(const Brdf& brdf, FitSamples samples, const ErrorModel& error) {
+  return independence_of(residuals_of(brdf, samples), error);
 }
 
 ErrorModel updated_error_model(const Brdf& brdf, FitSamples samples, const ErrorModel& error) {

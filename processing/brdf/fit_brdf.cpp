@@ -17,15 +17,16 @@ constexpr double kRankTolerance = 1e-12;
 
 struct Descent {
   Eigen::VectorXd values;
-  int iterations = 0;
+  int iterations = 0;  // steps tried
   bool converged = false;
 };
 
 Descent levenberg_marquardt(const BrdfProblem& problem, const BrdfParameters& layout, Eigen::VectorXd values, int max_iterations) {
   Descent descent{std::move(values)};
   double damping = 1e-3;
+  int taken = 0;  // a step that is refused costs little, and the next is shorter
   NormalEquations equations = problem.linearise(descent.values);
-  while (descent.iterations < max_iterations && !descent.converged) {
+  while (taken < max_iterations && !descent.converged) {
     ++descent.iterations;
     const std::vector<bool> held = layout.held(descent.values, equations.gradient);
     Eigen::VectorXd trial = descent.values + damped_step(equations, held, damping);
@@ -40,7 +41,8 @@ Descent levenberg_marquardt(const BrdfProblem& problem, const BrdfParameters& la
       descent.converged = equations.cost - cost <= kConvergedFall * equations.cost;
       descent.values = trial;
       damping = std::max(kLeastDamping, damping * 0.1);
-      if (!descent.converged) equations = problem.linearise(descent.values);
+      ++taken;
+      if (!descent.converged && taken < max_iterations) equations = problem.linearise(descent.values);
     } else {
       damping *= 10.0;
       descent.converged = damping > kMostDamping;  // no direction falls
@@ -109,8 +111,9 @@ BrdfFit fit_brdf(const Brdf& start, FitSamples samples, const BrdfFitOptions& op
     fit.iterations += descent.iterations;
     fit.converged = descent.converged;
   }
-  problem.reweight(values);
   fit.brdf = layout.brdf(values);
+  if (options.brdf_alone) return fit;
+  problem.reweight(values);
   fit.misfit = misfit(fit.brdf, samples, options.error);
   state_uncertainty(problem, layout, values, fit);
   return fit;

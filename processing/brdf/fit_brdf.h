@@ -16,7 +16,8 @@ struct BrdfFitOptions {
   ErrorModel error;
   bool robust = true;              // outlying samples count less, as the error model's tails have it
   int reweightings = 3;            // 1: weights of the start alone, as for an error model that does not depend on the model
-  int max_iterations = 30;         // of Levenberg-Marquardt, for each weighting
+  int max_iterations = 30;         // steps of Levenberg-Marquardt, for each weighting
+  bool brdf_alone = false;         // true: no misfit, chi_squared or covariance, which take as long as a step
 };
 
 struct BrdfFit {

@@ -11,8 +11,6 @@
 namespace lumitexel {
 namespace {
 
-constexpr int kErrorRounds = 2;  // of fit and error model in turn
-
 LobeBounds bounds_at(const Lobe& lobe, const MaterialFitOptions& options) {
   if (options.any_aim) return widest_bounds(options.family);
   return usual_bounds(options.family, lobe.aim < 0.0 ? kRetroAim : kForwardAim);
@@ -26,12 +24,15 @@ double effective_samples(FitSamples samples, double independence) {
 
 MaterialFit refined(const MaterialModel& start, FitSamples samples, const MaterialFitOptions& options) {
   MaterialFit result{start, {}, 0.0};
-  for (int round = 0; round < kErrorRounds; ++round) {
-    result.fit = fit_brdf(result.model.brdf, samples, refit_options(result.model, options));
-    result.model.brdf = result.fit.brdf;
-    if (!options.estimate_error) break;
-    result.model.error = estimate_error_model(result.model.brdf, samples, result.model.error);
+  if (options.estimate_error) {
+    BrdfFitOptions first = refit_options(start, options);
+    first.brdf_alone = true;
+    result.model.brdf = fit_brdf(start.brdf, samples, first).brdf;
+    result.model.error = estimate_error_model(result.model.brdf, samples, start.error);
   }
+  result.fit = fit_brdf(result.model.brdf, samples, refit_options(result.model, options));
+  result.model.brdf = result.fit.brdf;
+  if (options.estimate_error) result.model.error = updated_error_model(result.model.brdf, samples, result.model.error);
   return result;
 }
 
@@ -99,16 +100,12 @@ BrdfFitOptions refit_options(const MaterialModel& model, const MaterialFitOption
 MaterialFit fit_material(FitSamples samples, int channels, const Brdf* start, const MaterialFitOptions& options) {
   MaterialFit best = matte(samples, channels, options);
   MaterialFit grown = best;
+  const bool usable = start != nullptr && start->family == options.family && !start->lobes.empty();
   for (int lobes = 1; lobes <= options.most_lobes; ++lobes) {
-    grown = with_lobe(grown, samples, options);
+    const bool started = usable && static_cast<int>(start->lobes.size()) == lobes;
+    grown = started ? refined({*start, grown.model.error}, samples, options) : with_lobe(grown, samples, options);
     if (!options.choose_lobes || prefers(best, grown, samples, options)) best = grown;
     else break;
-  }
-  if (start != nullptr && start->family == options.family && static_cast<int>(start->lobes.size()) <= options.most_lobes) {
-    MaterialFit other = refined({*start, best.model.error}, samples, options);
-    if (options.choose_lobes || start->lobes.size() == best.model.brdf.lobes.size()) {
-      if (prefers(best, other, samples, options)) best = other;
-    }
   }
   set_criterion(best, samples, options.estimate_error ? best.model.error.independence : 1.0, options);
   return best;

@@ -26,10 +26,10 @@ struct Facets {
   double schlick = 0;                  // (1 - cos_d)^5
 };
 
-Facets facets(double log_alpha, const LobeGeometry& g) {
+Facets facets(const LobeShape& shape, const LobeGeometry& g) {
   const double along2 = g.along() * g.along();
   if (along2 < kLeastAlong2) return {};
-  const double alpha2 = std::exp(2.0 * log_alpha);
+  const double alpha2 = shape.shape * shape.shape;
   const double stretched = g.across2 + alpha2 * along2;
   const double spread = (g.across2 + along2) / stretched;
   const double root_i = std::sqrt(alpha2 + (1.0 - alpha2) * g.cos_i * g.cos_i);
@@ -45,13 +45,13 @@ Facets facets(double log_alpha, const LobeGeometry& g) {
   return result;
 }
 
-LobeTerms terms(double log_alpha, double, const LobeGeometry& geometry) {
-  const Facets f = facets(log_alpha, geometry);
+LobeTerms terms(const LobeShape& shape, const LobeGeometry& geometry) {
+  const Facets f = facets(shape, geometry);
   return {f.value * (1.0 - f.schlick), f.value * f.schlick};
 }
 
-LobeSlopes slopes(double log_alpha, double, const LobeGeometry& geometry) {
-  const Facets f = facets(log_alpha, geometry);
+LobeSlopes slopes(const LobeShape& shape, const LobeGeometry& geometry) {
+  const Facets f = facets(shape, geometry);
   return {f.value * (1.0 - f.schlick), f.value * f.schlick, f.by_log_alpha * (1.0 - f.schlick), f.by_log_alpha * f.schlick, 0.0};
 }
 

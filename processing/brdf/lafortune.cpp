@@ -27,31 +27,30 @@ struct Base {
   double log = 0;    // ln D
 };
 
-Base base_at(const LafortuneAim& aim, double log_exponent, double phi, const LobeGeometry& geometry) {
-  const double below_one = aim.below_one(geometry), plain = 1.0 - below_one;
+Base base_at(const LobeShape& shape, const LobeGeometry& geometry) {
+  const double below_one = shape.toward.below_one(geometry), plain = 1.0 - below_one;
   if (plain >= kSmallBase) return {plain, std::log1p(-below_one)};
-  const bool careful = plain > -kRounding && log_exponent < kSteepLogExponent;
-  const double value = careful ? careful_base(phi, geometry) : plain;
+  const bool careful = plain > -kRounding && shape.log_shape < kSteepLogExponent;
+  const double value = careful ? careful_base(shape.aim, geometry) : plain;
   return value > 0.0 ? Base{value, std::log(value)} : Base{};
 }
 
-LobeTerms terms(double log_exponent, double phi, const LobeGeometry& geometry) {
-  const Base base = base_at(lafortune_aim(phi), log_exponent, phi, geometry);
+LobeTerms terms(const LobeShape& shape, const LobeGeometry& geometry) {
+  const Base base = base_at(shape, geometry);
   if (base.value <= 0.0) return {};
-  return {std::exp(std::exp(log_exponent) * base.log), 0.0};
+  return {std::exp(shape.shape * base.log), 0.0};
 }
 
-LobeSlopes slopes(double log_exponent, double phi, const LobeGeometry& geometry) {
-  const LafortuneAim aim = lafortune_aim(phi);
-  const Base base = base_at(aim, log_exponent, phi, geometry);
+LobeSlopes slopes(const LobeShape& shape, const LobeGeometry& geometry) {
+  const Base base = base_at(shape, geometry);
   if (base.value <= 0.0) return {};
-  const double exponent = std::exp(log_exponent);
+  const double exponent = shape.shape;
   const double value = std::exp(exponent * base.log);
   // Where the power underflows the lobe is flat. Under an exponent below one the slope has no bound as the base goes to zero; the
   // smallest normal base keeps it finite.
   if (value == 0.0) return {};
   const double over_base = value / std::max(base.value, std::numeric_limits<double>::min());
-  return {value, 0.0, value * (exponent * base.log), 0.0, exponent * over_base * aim.slope(geometry)};
+  return {value, 0.0, value * (exponent * base.log), 0.0, exponent * over_base * shape.toward.slope(geometry)};
 }
 
 // A lobe of exponent N and peak A reflects about 2 pi A / (N + 2) of the light.

@@ -5,6 +5,7 @@
 
 #include "processing/brdf/misfit.h"
 #include "processing/brdf/ordered_sum.h"
+#include "processing/brdf/prepared_brdf.h"
 
 namespace lumitexel {
 namespace {
@@ -19,7 +20,7 @@ void normalise(std::vector<double>& log_weight) {
   for (double& w : log_weight) w /= sum;
 }
 
-SquaredError left_out_error(const Mixture& mixture, std::span<const Observation> samples, int channels, double clip) {
+SquaredError left_out_error(const Mixture& mixture, const std::vector<PreparedBrdf>& prepared, std::span<const Observation> samples, int channels, double clip) {
   const std::size_t count = mixture.materials.size();
   std::vector<ChannelValues> predicted(samples.size() * count);
   std::vector<double> deviances(samples.size() * count), total(count);
@@ -27,7 +28,7 @@ SquaredError left_out_error(const Mixture& mixture, std::span<const Observation>
     const MaterialModel& material = mixture.materials[k];
     const double constant = deviance_constant(material.error, channels);
     for (std::size_t s = 0; s < samples.size(); ++s) {
-      predicted[s * count + k] = predicted_reflectance(material.brdf, samples[s].geometry);
+      predicted[s * count + k] = predicted_reflectance(prepared[k], samples[s].geometry);
       const SampleMisfit misfit = sample_misfit(material.error, samples[s], channels, predicted[s * count + k]);
       total[k] += deviances[s * count + k] = deviance(material.error, misfit, channels) + constant;
     }
@@ -81,9 +82,11 @@ double clip_level(const Observations& observations, const LumitexelList& lumitex
 std::vector<SquaredError> left_out_errors(const Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
                                           double clip) {
   std::vector<SquaredError> errors(lumitexels.size());
+  std::vector<PreparedBrdf> prepared;
+  for (const MaterialModel& material : mixture.materials) prepared.emplace_back(material.brdf);
   for_each_block(lumitexels.size(), [&](std::size_t l) {
     const auto samples = observations.of(lumitexels[l]);
-    if (samples.size() >= 2) errors[l] = left_out_error(mixture, samples, observations.channels, clip);
+    if (samples.size() >= 2) errors[l] = left_out_error(mixture, prepared, samples, observations.channels, clip);
   });
   return errors;
 }

@@ -1,6 +1,12 @@
 #include "processing/brdf/lobe_family.h"
 
+#include <cmath>
+
 namespace lumitexel {
+
+LobeShape LobeFamily::shape(double log_shape, double aim) const {
+  return {log_shape, aim, std::exp(log_shape), aims ? lafortune_aim(aim) : LafortuneAim{}};
+}
 
 const LobeFamily& lobe_family(BrdfFamily family) {
   switch (family) {

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "processing/brdf/brdf.h"
+#include "processing/brdf/lafortune_base.h"
 
 namespace lumitexel {
 
@@ -20,6 +21,13 @@ struct LobeSlopes {
   double gain_by_shape = 0, offset_by_shape = 0, gain_by_aim = 0;
 };
 
+// A lobe's shape and aim, and what follows from them before any geometry is known: worked out once for many samples.
+struct LobeShape {
+  double log_shape = 0, aim = kMirrorAim;
+  double shape = 1;     // exp(log_shape)
+  LafortuneAim toward;  // of families that aim
+};
+
 struct LobeFamily {
   const char* name;
   bool aims;                                // whether `aim` is a parameter
@@ -29,8 +37,16 @@ struct LobeFamily {
   double (*most_log_strength)(double log_shape, double energy);
   std::span<const double> start_log_shapes;  // where a fit begins, broad to sharp
   // Both for cos_i, cos_o > 0.
-  LobeTerms (*terms)(double log_shape, double aim, const LobeGeometry& geometry);
-  LobeSlopes (*slopes)(double log_shape, double aim, const LobeGeometry& geometry);
+  LobeTerms (*terms_of)(const LobeShape& shape, const LobeGeometry& geometry);
+  LobeSlopes (*slopes_of)(const LobeShape& shape, const LobeGeometry& geometry);
+
+  LobeShape shape(double log_shape, double aim) const;
+  LobeTerms terms(double log_shape, double aim, const LobeGeometry& geometry) const {
+    return terms_of(shape(log_shape, aim), geometry);
+  }
+  LobeSlopes slopes(double log_shape, double aim, const LobeGeometry& geometry) const {
+    return slopes_of(shape(log_shape, aim), geometry);
+  }
 };
 
 extern const LobeFamily kLafortuneFamily, kGgxFamily, kWardFamily;

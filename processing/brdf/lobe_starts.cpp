@@ -25,6 +25,8 @@ System channel_system(const Brdf& brdf, std::size_t channel, FitSamples samples,
   const auto n = static_cast<Eigen::Index>(brdf.lobes.size() + 1);
   System system{BasisMatrix::Zero(n, n), BasisVector::Zero(n), 0.0};
   const LobeFamily& family = lobe_family(brdf.family);
+  std::vector<LobeShape> shapes;
+  for (const auto& lobe : brdf.lobes) shapes.push_back(family.shape(lobe[channel].log_shape, lobe[channel].aim));
   for (std::size_t s = 0; s < samples.size(); s += stride) {
     const Observation& sample = *samples[s].observation;
     const double r = static_cast<double>(sample.reflectance[channel]), cos_i = sample.geometry.cos_i;
@@ -33,9 +35,8 @@ System channel_system(const Brdf& brdf, std::size_t channel, FitSamples samples,
     BasisVector row(n);
     row[0] = cos_i;
     double target = r;
-    for (std::size_t l = 0; l < brdf.lobes.size(); ++l) {
-      const Lobe& lobe = brdf.lobes[l][channel];
-      const LobeTerms terms = family.terms(lobe.log_shape, lobe.aim, sample.geometry);
+    for (std::size_t l = 0; l < shapes.size(); ++l) {
+      const LobeTerms terms = family.terms_of(shapes[l], sample.geometry);
       row[static_cast<Eigen::Index>(l) + 1] = cos_i * terms.gain;
       target -= cos_i * terms.offset;
     }

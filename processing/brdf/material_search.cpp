@@ -12,6 +12,7 @@ namespace lumitexel {
 namespace {
 
 constexpr int kSearchRounds = 24, kMeanRounds = 8;  // of expectation-maximisation
+constexpr double kSearchSettled = 1e-4;             // of log likelihood a sample and round
 constexpr int kMostExtra = 8;                       // materials beyond those wanted that splitting may make
 
 // While materials are told apart they all have a lobe: what a matte whole hides, a part may show.
@@ -26,7 +27,7 @@ MaterialSearch search_with(ErrorSource errors, const Observations& observations,
   const MaterialFit whole = fit_material(samples_of(observations, selection), observations.channels, nullptr, search.fit);
   search.whole = whole.model;
   search.mixture = split_materials(whole, observations, selection, most, search.fit);
-  maximise_expectation(search.mixture, observations, selection, search.fit, kSearchRounds);
+  maximise_expectation(search.mixture, observations, selection, search.fit, {kSearchRounds, kSearchSettled});
   merge_materials(search.mixture, observations, selection, {options.materials, search.fit}, report);
   return search;
 }
@@ -39,7 +40,7 @@ MaterialSearch with_mean_fits(MaterialSearch search, const Observations& observa
   std::vector<BrdfFit> fits;
   const Responsibilities r = responsibilities(search.mixture, observations, selection);
   choose_lobes(search.mixture, observations, selection, r, search.fit, fits);
-  maximise_expectation(search.mixture, observations, selection, search.fit, kMeanRounds);
+  maximise_expectation(search.mixture, observations, selection, search.fit, {kMeanRounds, kSearchSettled});
   return search;
 }
 

@@ -16,7 +16,10 @@ namespace lumitexel {
 namespace {
 
 constexpr int kRounds = 12;             // of settling after a merge
+constexpr double kSettled = 1e-4;       // enough to tell which is next
+constexpr int kTrialRounds = 3, kTrialSteps = 2;  // of a merged material's fit
 constexpr std::size_t kMostTried = 8;   // pairs, the most alike first
+constexpr std::size_t kMostTriedOnAll = 3, kLumitexelsForRanking = 1000;
 constexpr std::size_t kMostGeometries = 500;
 
 struct Pair {
@@ -57,28 +60,37 @@ std::vector<Pair> likely_pairs(const Mixture& mixture, const Observations& obser
   return pairs;
 }
 
+// One lumitexel in `of`, scattered: materials may lie in the list in stripes that an even stride would fall in step with.
+bool drawn(std::size_t lumitexel, std::size_t of) {
+  return of <= 1 || ((lumitexel * 0x9E3779B97F4A7C15ull) >> 33) % of == 0;
+}
+
+// Of the lumitexels drawn, one in `of`.
 std::vector<FitSample> samples_of_pair(const Observations& observations, const LumitexelList& lumitexels, const Responsibilities& r,
-                                       const Pair& pair) {
+                                       const Pair& pair, std::size_t of) {
   Responsibilities both{1, std::vector<double>(lumitexels.size()), {}, 0.0};
-  for (std::size_t l = 0; l < lumitexels.size(); ++l) both.probability[l] = r.at(l, pair.first) + r.at(l, pair.second);
+  for (std::size_t l = 0; l < lumitexels.size(); ++l) {
+    if (drawn(l, of)) both.probability[l] = r.at(l, pair.first) + r.at(l, pair.second);
+  }
   return samples_of(observations, lumitexels, both, 0);
 }
 
 // What keeping the two apart gains in log likelihood if all three shared the merged error model: of each lumitexel, ln of the two's
 // mixture against the one.
 double gain_in_appearance(const Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
-                          const Responsibilities& r, const Merge& merge, double& samples) {
+                          const Responsibilities& r, const Merge& merge, std::size_t of, double& samples) {
   const double shares = mixture.share[merge.pair.first] + mixture.share[merge.pair.second];
   double gain = 0.0;
+  const PreparedMisfit merged(merge.merged.brdf, merge.merged.error);
+  const PreparedMisfit first(mixture.materials[merge.pair.first].brdf, merge.merged.error);
+  const PreparedMisfit second(mixture.materials[merge.pair.second].brdf, merge.merged.error);
   for (std::size_t l = 0; l < lumitexels.size(); ++l) {
     const double weight = r.at(l, merge.pair.first) + r.at(l, merge.pair.second);
-    if (weight < 1e-3) continue;
+    if (weight < 1e-3 || !drawn(l, of)) continue;
     const auto own = observations.of(lumitexels[l]);
-    const double one = -0.5 * misfit(merge.merged.brdf, own, merge.merged.error);
-    const auto part = [&](std::size_t k) {
-      return std::log(mixture.share[k] / shares) - 0.5 * misfit(mixture.materials[k].brdf, own, merge.merged.error);
-    };
-    const double a = part(merge.pair.first), b = part(merge.pair.second), most = std::max(a, b);
+    const double one = -0.5 * merged.of(own);
+    const double a = std::log(mixture.share[merge.pair.first] / shares) - 0.5 * first.of(own);
+    const double b = std::log(mixture.share[merge.pair.second] / shares) - 0.5 * second.of(own), most = std::max(a, b);
     gain += weight * (most + std::log(std::exp(a - most) + std::exp(b - most)) - one);
     samples += weight * static_cast<double>(own.size());
   }
@@ -86,18 +98,23 @@ double gain_in_appearance(const Mixture& mixture, const Observations& observatio
 }
 
 Merge try_merge(const Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels, const Responsibilities& r,
-                const Pair& pair, const MaterialFitOptions& options) {
+                const Pair& pair, std::size_t of, const MaterialFitOptions& options) {
   Merge merge;
   merge.pair = pair;
-  const std::vector<FitSample> samples = samples_of_pair(observations, lumitexels, r, pair);
+  const std::vector<FitSample> samples = samples_of_pair(observations, lumitexels, r, pair, of);
   const std::size_t larger = mixture.share[pair.first] >= mixture.share[pair.second] ? pair.first : pair.second;
   merge.merged = mixture.materials[larger];
-  for (int round = 0; round < 2; ++round) {
-    merge.merged.brdf = fit_brdf(merge.merged.brdf, samples, refit_options(merge.merged, options)).brdf;
-    if (options.estimate_error) merge.merged.error = estimate_error_model(merge.merged.brdf, samples, merge.merged.error);
+  for (int round = 0; round < kTrialRounds; ++round) {
+    BrdfFitOptions fit = refit_options(merge.merged, options);
+    fit.reweightings = 1;
+    fit.max_iterations = kTrialSteps;
+    fit.brdf_alone = true;
+    merge.merged.brdf = fit_brdf(merge.merged.brdf, samples, fit).brdf;
+    if (options.estimate_error) merge.merged.error = updated_error_model(merge.merged.brdf, samples, merge.merged.error);
   }
   double count = 0.0;
-  merge.loss = gain_in_appearance(mixture, observations, lumitexels, r, merge, count);
+  merge.loss = gain_in_appearance(mixture, observations, lumitexels, r, merge, of, count);
+  if (options.estimate_error) merge.merged.error.independence = independence_of(merge.merged.brdf, samples, merge.merged.error);
   const int parameters = parameters_of(merge.merged.brdf, refit_options(merge.merged, options)).size() + 1;  // and its share
   const double independence = options.estimate_error ? merge.merged.error.independence : 1.0;
   merge.needed_apart = 2.0 * independence * merge.loss > parameters * std::log(std::max(2.0, count * independence)) &&
@@ -108,11 +125,25 @@ Merge try_merge(const Mixture& mixture, const Observations& observations, const 
 // Nothing if `only_where_not_needed` and the evidence is for keeping every pair apart.
 std::optional<Merge> cheapest_merge(const Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
                                     const Responsibilities& r, bool only_where_not_needed, const MaterialFitOptions& options) {
-  const std::vector<Pair> pairs = likely_pairs(mixture, observations);
-  std::vector<Merge> merges(pairs.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t p) {
-    merges[p] = try_merge(mixture, observations, lumitexels, r, pairs[p], options);
-  });
+  std::vector<Pair> pairs = likely_pairs(mixture, observations);
+  const auto tried = [&](std::size_t count, std::size_t of) {
+    std::vector<Merge> merges(count);
+    oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t p) {
+      merges[p] = try_merge(mixture, observations, lumitexels, r, pairs[p], of, options);
+    });
+    return merges;
+  };
+  const std::size_t of = lumitexels.size() / kLumitexelsForRanking + 1;
+  if (of > 1) {  // a part of the lumitexels tells which few are worth all of them
+    const std::vector<Merge> ranking = tried(pairs.size(), of);
+    std::vector<std::size_t> order(pairs.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return ranking[a].loss < ranking[b].loss; });
+    std::vector<Pair> best;
+    for (std::size_t i = 0; i < std::min(kMostTriedOnAll, order.size()); ++i) best.push_back(pairs[order[i]]);
+    pairs = best;
+  }
+  std::vector<Merge> merges = tried(pairs.size(), 1);
   if (only_where_not_needed) std::erase_if(merges, [](const Merge& merge) { return merge.needed_apart; });
   if (merges.empty()) return std::nullopt;
   return *std::min_element(merges.begin(), merges.end(), [](const Merge& a, const Merge& b) { return a.loss < b.loss; });
@@ -155,7 +186,7 @@ void merge_until(int materials, bool stop_where_needed, Mixture& mixture, const 
     const std::optional<Merge> merge = cheapest_merge(mixture, observations, lumitexels, r, stop_where_needed, fit);
     if (!merge) break;
     apply(*merge, mixture);
-    r = maximise_expectation(mixture, observations, lumitexels, fit, kRounds);
+    r = maximise_expectation(mixture, observations, lumitexels, fit, {kRounds, kSettled, false});
     after(static_cast<int>(mixture.materials.size()));
   }
 }

@@ -5,8 +5,21 @@
 
 #include "processing/brdf/error_model.h"
 #include "processing/brdf/observations.h"
+#include "processing/brdf/prepared_brdf.h"
 
 namespace lumitexel {
+
+// For many sets of samples, such as lumitexels: what they share is worked out once. `error` must outlive it.
+class PreparedMisfit {
+ public:
+  PreparedMisfit(const Brdf& brdf, const ErrorModel& error);
+  double of(std::span<const Observation> samples) const;
+
+ private:
+  PreparedBrdf brdf_;
+  const ErrorModel& error_;
+  double constant_;
+};
 
 double misfit(const Brdf& brdf, std::span<const Observation> samples, const ErrorModel& error);
 // Every sample counted by its share.

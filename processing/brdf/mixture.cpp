@@ -13,25 +13,24 @@
 namespace lumitexel {
 namespace {
 
-constexpr double kSettled = 1e-5;         // change of log likelihood a sample at which the iteration ends
 constexpr double kLeastProbability = 1e-3;  // below it a lumitexel is not worth its time in a material's fit
-constexpr int kStepsPerRound = 2;         // of Levenberg-Marquardt
+constexpr int kStepsPerRound = 1;         // of Levenberg-Marquardt
 
-MaterialModel maximised(const MaterialModel& model, FitSamples samples, const MaterialFitOptions& options, bool first_round) {
+MaterialModel maximised(const MaterialModel& model, FitSamples samples, const MaterialFitOptions& options, bool ask_for_tails) {
   BrdfFitOptions fit = refit_options(model, options);
   fit.reweightings = 1;
+  fit.brdf_alone = true;
   fit.max_iterations = kStepsPerRound;
   MaterialModel better{fit_brdf(model.brdf, samples, fit).brdf, model.error};
   if (!options.estimate_error) return better;
-  // The tails' weight is asked for once; after that the scales follow.
-  better.error = first_round ? estimate_error_model(better.brdf, samples, model.error)
+  better.error = ask_for_tails ? estimate_error_model(better.brdf, samples, model.error)
                              : updated_error_model(better.brdf, samples, model.error);
   return better;
 }
 
 // True if a material vanished.
 bool maximise(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels, const Responsibilities& r,
-              const MaterialFitOptions& options, bool first_round) {
+              const MaterialFitOptions& options, bool ask_for_tails) {
   std::vector<double> members(mixture.materials.size(), 0.0);
   for (std::size_t l = 0; l < lumitexels.size(); ++l) {
     for (std::size_t k = 0; k < members.size(); ++k) members[k] += r.at(l, k);
@@ -39,7 +38,7 @@ bool maximise(Mixture& mixture, const Observations& observations, const Lumitexe
   const double most = *std::max_element(members.begin(), members.end());
   oneapi::tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t k) {
     if (members[k] < std::min(kFewestMembers, most)) return;
-    mixture.materials[k] = maximised(mixture.materials[k], samples_of(observations, lumitexels, r, k), options, first_round);
+    mixture.materials[k] = maximised(mixture.materials[k], samples_of(observations, lumitexels, r, k), options, ask_for_tails);
   });
   Mixture kept;
   for (std::size_t k = 0; k < members.size(); ++k) {
@@ -83,11 +82,12 @@ LumitexelList with_samples(const Observations& observations) {
 Responsibilities responsibilities(const Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels) {
   const std::size_t count = mixture.materials.size();
   Responsibilities r{count, std::vector<double>(lumitexels.size() * count), std::vector<double>(lumitexels.size() * count), 0.0};
+  std::vector<PreparedMisfit> materials;
+  for (const MaterialModel& material : mixture.materials) materials.emplace_back(material.brdf, material.error);
   r.log_likelihood = ordered_sum(lumitexels.size(), 0.0, [&](std::size_t l, double& sum) {
     double* log_probability = &r.probability[l * count];
     for (std::size_t k = 0; k < count; ++k) {
-      const MaterialModel& material = mixture.materials[k];
-      const double value = misfit(material.brdf, observations.of(lumitexels[l]), material.error);
+      const double value = materials[k].of(observations.of(lumitexels[l]));
       r.misfit[l * count + k] = value;
       log_probability[k] = std::log(mixture.share[k]) - 0.5 * value;
     }
@@ -117,15 +117,15 @@ std::vector<FitSample> samples_of(const Observations& observations, const Lumite
 }
 
 Responsibilities maximise_expectation(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
-                                      const MaterialFitOptions& options, int rounds) {
+                                      const MaterialFitOptions& options, const ExpectationOptions& expectation) {
   Responsibilities r = responsibilities(mixture, observations, lumitexels);
   double samples = 0.0;
   for (const std::size_t i : lumitexels) samples += static_cast<double>(observations.of(i).size());
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < expectation.rounds; ++round) {
     const double before = r.log_likelihood;
-    const bool vanished = maximise(mixture, observations, lumitexels, r, options, round == 0);
+    const bool vanished = maximise(mixture, observations, lumitexels, r, options, expectation.ask_for_tails && round == 0);
     r = responsibilities(mixture, observations, lumitexels);
-    if (!vanished && std::abs(r.log_likelihood - before) <= kSettled * samples) break;
+    if (!vanished && std::abs(r.log_likelihood - before) <= expectation.settled * samples) break;
   }
   return r;
 }

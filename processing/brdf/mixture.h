@@ -40,10 +40,15 @@ std::vector<FitSample> samples_of(const Observations& observations, const Lumite
                                   const Responsibilities& responsibilities, std::size_t k);
 std::vector<FitSample> samples_of(const Observations& observations, const LumitexelList& lumitexels);
 
-// Both steps in turn until the likelihood settles or `rounds` have passed. Materials left with fewer than kFewestMembers lumitexels
+// Both steps in turn until the log likelihood changes by no more than `settled` a sample, or `rounds` have passed. Materials left with fewer than kFewestMembers lumitexels
 // vanish. Returns the responsibilities under the final mixture.
 inline constexpr double kFewestMembers = 20;
+struct ExpectationOptions {
+  int rounds = 24;
+  double settled = 1e-5;
+  bool ask_for_tails = true;  // what kind of tails each material's errors have, and how heavy; false: as they are, only scales follow
+};
 Responsibilities maximise_expectation(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
-                                      const MaterialFitOptions& options, int rounds);
+                                      const MaterialFitOptions& options, const ExpectationOptions& expectation);
 
 }  // namespace lumitexel

@@ -3,15 +3,44 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "processing/brdf/brdf_slopes.h"
 #include "processing/brdf/ordered_sum.h"
+#include "processing/brdf/prepared_brdf.h"
 
 namespace lumitexel {
+namespace {
+
+// L v and L S in place, L lower triangular: from the last row, which needs all, to the first.
+void whiten(const ChannelMatrix& lower, SampleValues& value, SampleSlopes& slope) {
+  const Eigen::Index n = slope.cols();
+  for (Eigen::Index i = lower.rows(); i-- > 0;) {
+    double* row = slope.data() + i * n;
+    value[i] *= lower(i, i);
+    for (Eigen::Index p = 0; p < n; ++p) row[p] *= lower(i, i);
+    for (Eigen::Index j = 0; j < i; ++j) {
+      const double* other = slope.data() + j * n;
+      value[i] += lower(i, j) * value[j];
+      for (Eigen::Index p = 0; p < n; ++p) row[p] += lower(i, j) * other[p];
+    }
+  }
+}
+
+double squared_norm(const ChannelMatrix& lower, const SampleValues& value) {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < value.size(); ++i) {
+    double whitened = lower.size() > 0 ? 0.0 : value[i];
+    for (Eigen::Index j = 0; lower.size() > 0 && j <= i; ++j) whitened += lower(i, j) * value[j];
+    sum += whitened * whitened;
+  }
+  return sum;
+}
+
+}  // namespace
+
 BrdfProblem::BrdfProblem(FitSamples samples, const BrdfParameters& layout, const ErrorModel& error, bool robust)
     : samples_(samples), layout_(layout), error_(error), robust_(robust), weights_(samples.size()) {}
 
 void BrdfProblem::reweight(const Eigen::VectorXd& at) {
-  const Brdf model = layout_.brdf(at);
+  const PreparedBrdf model(layout_.brdf(at));
   for_each_block(samples_.size(), [&](std::size_t s) {
     const Observation& sample = *samples_[s].observation;
     const ChannelValues predicted = predicted_reflectance(model, sample.geometry);
@@ -30,7 +59,7 @@ double BrdfProblem::total_weight() const {
 }
 
 double BrdfProblem::cost(const Eigen::VectorXd& at) const {
-  const Brdf model = layout_.brdf(at);
+  const PreparedBrdf model(layout_.brdf(at));
   const ChannelMatrix& whitening = error_.whitening();
   const int channels = layout_.channels();
   return ordered_sum(samples_.size(), 0.0, [&](std::size_t s, double& sum) {
@@ -42,38 +71,42 @@ double BrdfProblem::cost(const Eigen::VectorXd& at) const {
       residual[c] = weights_[s].root * weights_[s].inverse_scale[channel] *
                     (predicted[channel] - static_cast<double>(sample.reflectance[channel]));
     }
-    if (whitening.size() > 0) residual = (whitening.triangularView<Eigen::Lower>() * residual).eval();
-    sum += residual.squaredNorm();
+    sum += squared_norm(whitening, residual);
   });
 }
 
-void BrdfProblem::add(const Eigen::VectorXd& at, std::size_t s, NormalEquations& sums) const {
+// Plain loops: the library's product of matrices this small, and of a size unknown to the compiler, takes several times as long.
+void BrdfProblem::add(const BrdfSlopes& model, std::size_t s, NormalEquations& sums) const {
   const Observation& sample = *samples_[s].observation;
-  SampleValues residual(layout_.channels());
-  SampleSlopes slope(layout_.channels(), layout_.size());
-  predict_with_slopes(layout_, at, sample.geometry, residual, slope);
+  SampleValues residual;
+  SampleSlopes slope;
+  model.predict(sample.geometry, residual, slope);
   for (int c = 0; c < layout_.channels(); ++c) {
     const auto channel = static_cast<std::size_t>(c);
     const double scale = weights_[s].root * weights_[s].inverse_scale[channel];
     residual[c] = scale * (residual[c] - static_cast<double>(sample.reflectance[channel]));
     slope.row(c) *= scale;
   }
-  if (error_.whitening().size() > 0) {
-    residual = (error_.whitening().triangularView<Eigen::Lower>() * residual).eval();
-    slope = (error_.whitening().triangularView<Eigen::Lower>() * slope).eval();
-  }
-  sums.cost += residual.squaredNorm();
-  sums.gradient.noalias() += slope.transpose() * residual;
+  if (error_.whitening().size() > 0) whiten(error_.whitening(), residual, slope);
+  const int n = layout_.size();
   for (int c = 0; c < layout_.channels(); ++c) {
-    sums.matrix.selfadjointView<Eigen::Lower>().rankUpdate(slope.row(c).transpose());
+    const double* row = slope.data() + c * n;
+    sums.cost += residual[c] * residual[c];
+    for (int j = 0; j < n; ++j) {
+      if (row[j] == 0.0) continue;  // most: a channel knows its own strengths only
+      double* column = sums.matrix.data() + j * n;
+      sums.gradient[j] += row[j] * residual[c];
+      for (int i = j; i < n; ++i) column[i] += row[i] * row[j];
+    }
   }
 }
 
 NormalEquations BrdfProblem::linearise(const Eigen::VectorXd& at) const {
   const int n = layout_.size();
+  const BrdfSlopes model(layout_, at);
   NormalEquations sums = ordered_sum(
       samples_.size(), NormalEquations{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), 0.0},
-      [&](std::size_t s, NormalEquations& block) { add(at, s, block); });
+      [&](std::size_t s, NormalEquations& block) { add(model, s, block); });
   sums.matrix = sums.matrix.selfadjointView<Eigen::Lower>();
   return sums;
 }

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "processing/brdf/brdf_parameters.h"
+#include "processing/brdf/brdf_slopes.h"
 #include "processing/brdf/error_model.h"
 #include "processing/brdf/observations.h"
 
@@ -36,7 +36,7 @@ class BrdfProblem {
     std::array<double, kMaxChannels> inverse_scale{};
     double root = 0;  // of share times robust weight
   };
-  void add(const Eigen::VectorXd& at, std::size_t sample, NormalEquations& sums) const;
+  void add(const BrdfSlopes& model, std::size_t sample, NormalEquations& sums) const;
 
   FitSamples samples_;
   const BrdfParameters& layout_;

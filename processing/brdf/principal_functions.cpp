@@ -65,10 +65,12 @@ class PrincipalProblem {
   // With the weights held where projection left them: what it would move of them is second order.
   NormalEquations linearise(const Eigen::VectorXd& values, const std::vector<Brdf>& basis, const std::vector<BasisVector>& weights) const {
     const NormalEquations zero{Eigen::MatrixXd::Zero(size_, size_), Eigen::VectorXd::Zero(size_), 0.0};
+    std::vector<BrdfSlopes> models;
+    for (std::size_t k = 0; k < layouts_.size(); ++k) models.emplace_back(layouts_[k], values.segment(offsets_[k], layouts_[k].size()));
     NormalEquations sums = ordered_sum(lumitexels_.size(), zero, [&](std::size_t l, NormalEquations& block) {
       const TexelSystem system = texel_system(observations_.of(lumitexels_[l]), observations_.channels, basis, material_, error_);
       const auto samples = observations_.of(lumitexels_[l]);
-      for (std::size_t s = 0; s < samples.size(); ++s) add(values, samples[s], system.samples[s], weights[l], block);
+      for (std::size_t s = 0; s < samples.size(); ++s) add(models, samples[s], system.samples[s], weights[l], block);
     });
     sums.matrix = sums.matrix.selfadjointView<Eigen::Lower>();
     return sums;
@@ -90,7 +92,7 @@ class PrincipalProblem {
     return values.segment(offsets_[k], layouts_[k].size());
   }
 
-  void add(const Eigen::VectorXd& values, const Observation& sample, const SampleEquations& equations, const BasisVector& weights,
+  void add(const std::vector<BrdfSlopes>& models, const Observation& sample, const SampleEquations& equations, const BasisVector& weights,
            NormalEquations& sums) const {
     const int channels = observations_.channels;
     const ChannelValues expected = predicted_reflectance(material_, sample.geometry);
@@ -100,7 +102,7 @@ class PrincipalProblem {
     for (std::size_t k = 0; k < layouts_.size(); ++k) {
       const double weight = weights[static_cast<Eigen::Index>(k)];
       if (weight == 0.0) continue;
-      predict_with_slopes(layouts_[k], values.segment(offsets_[k], layouts_[k].size()), sample.geometry, value, slope);
+      models[k].predict(sample.geometry, value, slope);
       slopes.middleCols(offsets_[k], layouts_[k].size()) = weight * slope;
     }
     for (int c = 0; c < channels; ++c) {

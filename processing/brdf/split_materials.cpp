@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kMostSamples = 8000;  // that a split is tried on
 constexpr int kRounds = 5;
+constexpr double kSettled = 1e-4;
 constexpr std::size_t kWorstShare = 8;  // one in so many, the worst explained, may begin a material of their own
 
 struct Part {  // a material and the lumitexels that are most probably its own
@@ -71,7 +72,7 @@ std::optional<Split> best_split(const Part& part, const Observations& observatio
   std::optional<Split> best;
   for (const BrdfPair& pair : proposals(part.model, observations, members, alone, options)) {
     Mixture halves{{{pair.first, part.model.error}, {pair.second, part.model.error}}, {0.5, 0.5}};
-    const Responsibilities r = maximise_expectation(halves, observations, members, options, kRounds);
+    const Responsibilities r = maximise_expectation(halves, observations, members, options, {kRounds, kSettled, false});
     const double gain = (r.log_likelihood - alone.log_likelihood) * static_cast<double>(part.members.size()) /
                         static_cast<double>(members.size());
     if (halves.materials.size() < 2 || (best && gain <= best->gain) || gain <= 0.0) continue;

@@ -17,8 +17,8 @@ constexpr double kLeastLogAlpha = -6.907755278982137;  // 1e-3
 constexpr double kLogShapes[] = {-0.10536051565782628, -0.5108256237659907, -0.916290731874155, -1.3862943611198906,
                                  -1.8971199848858813,  -2.5257286443082556, -3.2188758248682006};
 
-LobeSlopes slopes(double log_alpha, double, const LobeGeometry& g) {
-  const double alpha2 = std::exp(2.0 * log_alpha), along2 = g.along() * g.along();
+LobeSlopes slopes(const LobeShape& shape, const LobeGeometry& g) {
+  const double alpha2 = shape.shape * shape.shape, along2 = g.along() * g.along();
   if (along2 < kLeastAlong2) return {};
   const double exponent = g.across2 / (alpha2 * along2);
   const double value = std::exp(-exponent) / (kPi * alpha2) * ((g.across2 + along2) / along2) / along2;
@@ -26,8 +26,8 @@ LobeSlopes slopes(double log_alpha, double, const LobeGeometry& g) {
   return {value, 0.0, value * (-2.0 + 2.0 * exponent), 0.0, 0.0};
 }
 
-LobeTerms terms(double log_alpha, double aim, const LobeGeometry& geometry) {
-  const LobeSlopes all = slopes(log_alpha, aim, geometry);
+LobeTerms terms(const LobeShape& shape, const LobeGeometry& geometry) {
+  const LobeSlopes all = slopes(shape, geometry);
   return {all.gain, all.offset};
 }
 

@@ -7,7 +7,9 @@
 #include <numbers>
 #include <numeric>
 #include <random>
+#include <stdexcept>
 
+#include "processing/brdf/experiment/label_bound.h"
 #include "processing/brdf/normal_equations.h"
 
 namespace lumitexel {
@@ -58,13 +60,11 @@ int draw_label(Dice& dice, int lumitexel, bool even) {
 }
 
 void measure(const Brdf& truth, const FiveMaterialsOptions& options, Dice& dice, Observation& sample) {
-  const double wrong = dice.uniform(0.0, 1.0) < options.outliers ? dice.uniform(0.0, 3.0) : 1.0;
+  const double wrong = dice.uniform(0.0, 1.0) < options.outliers ? dice.uniform(0.0, kMostOutlierFactor) : 1.0;
   const auto draw = [&] { return options.gaussian ? dice.normal() / std::numbers::sqrt3 : dice.uniform(-1.0, 1.0); };
-  double error = draw();
   const ChannelValues exact = predicted_reflectance(truth, sample.geometry);
   for (std::size_t c = 0; c < 3; ++c) {
-    if (c > 0 && !options.channels_err_together) error = draw();
-    sample.reflectance[c] = static_cast<float>(exact[c] * (1.0 + options.noise * error) * wrong);
+    sample.reflectance[c] = static_cast<float>(exact[c] * (1.0 + options.noise * draw()) * wrong);
   }
 }
 
@@ -94,26 +94,6 @@ Bound cramer_rao(const FiveMaterials& world, int k) {
   return bound;
 }
 
-double bayes_accuracy(const FiveMaterials& world) {
-  Mixture mixture;
-  ErrorModel error(world.relative_sigma, 1e-6);
-  error.freedom = ErrorModel::kGaussian;
-  for (std::size_t k = 0; k < world.truth.size(); ++k) {
-    mixture.materials.push_back({world.truth[k], error});
-    mixture.share.push_back(static_cast<double>(std::count(world.label.begin(), world.label.end(), static_cast<int>(k))) /
-                            static_cast<double>(world.label.size()));
-  }
-  LumitexelList all(world.label.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  const Responsibilities r = responsibilities(mixture, world.observations, all);
-  double right = 0.0;
-  for (std::size_t l = 0; l < all.size(); ++l) {
-    const double* begin = &r.probability[l * r.materials];
-    right += std::max_element(begin, begin + r.materials) - begin == world.label[l];
-  }
-  return right / static_cast<double>(all.size());
-}
-
 // Materials in the order of their exponents: which is whose. Matte ones come first.
 std::vector<std::size_t> by_exponent(const Clustering& clustering) {
   std::vector<std::size_t> order(clustering.materials.size());
@@ -128,12 +108,20 @@ std::vector<std::size_t> by_exponent(const Clustering& clustering) {
 
 }  // namespace
 
+std::vector<Brdf> five_materials_truth() {
+  std::vector<Brdf> truth;
+  for (const double exponent : kExponents) truth.push_back(material(exponent));
+  return truth;
+}
+
 FiveMaterials make_five_materials(std::uint64_t seed, const FiveMaterialsOptions& options) {
+  if (options.gaussian && options.outliers > 0.0) throw std::invalid_argument("five materials: outliers come with uniform noise only");
   Dice dice(seed * 7919 + 13);
   FiveMaterials world;
+  world.options = options;
   world.observations.channels = 3;
   world.relative_sigma = options.noise / std::numbers::sqrt3;
-  for (const double exponent : kExponents) world.truth.push_back(material(exponent));
+  world.truth = five_materials_truth();
   std::array<Eigen::Vector3d, 5> views;
   for (Eigen::Vector3d& view : views) view = upward(dice, kLeastViewCosine);
   for (int i = 0; i < options.lumitexels; ++i) {
@@ -154,24 +142,29 @@ FiveMaterialsScore score(const FiveMaterials& world, const Clustering& clusterin
   FiveMaterialsScore result;
   result.found = static_cast<int>(clustering.materials.size());
   result.bayes_accuracy = bayes_accuracy(world);
+  result.normal_accuracy = accuracy_by_normal_noise(world);
   result.worst_exponent = result.worst_diffuse = std::numeric_limits<double>::infinity();
   if (clustering.materials.size() != world.truth.size()) return result;
   const std::vector<std::size_t> order = by_exponent(clustering);
   std::vector<int> truth_of(order.size());
   result.all_found = true;
+  result.fitted.resize(order.size());
   result.worst_exponent = result.worst_diffuse = 0.0;
   for (std::size_t k = 0; k < order.size(); ++k) {
     truth_of[order[k]] = static_cast<int>(k);
     const Brdf& fitted = clustering.materials[order[k]].model.brdf;
     const Bound bound = cramer_rao(world, static_cast<int>(k));
+    result.fitted[k] = fitted;
     const double exponent = fitted.lobes.empty() ? 0.0 : std::exp(fitted.lobes[0][0].log_shape);
     const double half_gap = 0.5 * (kExponents[1] - kExponents[0]);
     if (std::abs(exponent - kExponents[k]) > half_gap) result.all_found = false;
+    result.log_exponent_error[k] = std::log(std::max(1e-3, exponent) / kExponents[k]) / bound.log_exponent;
     result.worst_exponent = std::max(result.worst_exponent, std::abs(exponent / kExponents[k] - 1.0));
-    result.squared_exponent += std::pow(std::log(std::max(1e-3, exponent) / kExponents[k]) / bound.log_exponent, 2) / 5.0;
+    result.squared_exponent += std::pow(result.log_exponent_error[k], 2) / 5.0;
     for (std::size_t c = 0; c < 3; ++c) {
       result.worst_diffuse = std::max(result.worst_diffuse, std::abs(fitted.diffuse[c] / kDiffuse[c] - 1.0));
-      result.squared_diffuse += std::pow((fitted.diffuse[c] - kDiffuse[c]) / bound.diffuse[c], 2) / 15.0;
+      result.diffuse_error[k][c] = (fitted.diffuse[c] - kDiffuse[c]) / bound.diffuse[c];
+      result.squared_diffuse += std::pow(result.diffuse_error[k][c], 2) / 15.0;
     }
   }
   double right = 0.0;

@@ -58,11 +58,39 @@ TEST(EstimateError, FindsScaleAndThatChannelsGoTogether) {
   }
 }
 
-TEST(EstimateError, OutliersMakeTailsAndNotTheScale) {
-  const Observations observations = noisy(kTruth, {0.05, 0.0, 0.0, 0.03}, 4);
-  const ErrorModel found = estimate_error_model(kTruth, all_samples(observations), ErrorModel(0.3, 1e-3));
-  EXPECT_LE(found.freedom, 6.0);
-  EXPECT_NEAR(found.relative, 0.05, 0.012);  // a t distribution's scale is below its core's deviation
+// 3 % of 2,400 samples are outliers, 72 on average, of which one in nine is within three deviations of the truth: 64 +- 8 show.
+TEST(EstimateError, OutliersBecomeAWideNormalAndLeaveTheScale) {
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    const Observations observations = noisy(kTruth, {0.05, 0.0, 0.0, 0.03}, seed);
+    const ErrorModel found = estimate_error_model(kTruth, all_samples(observations), ErrorModel(0.3, 1e-3));
+    EXPECT_NEAR(found.outlier_share, 0.027, 0.012) << seed;
+    EXPECT_GT(found.outlier_scale, 10.0) << seed;  // 1.0 / 0.05 is 20
+    EXPECT_NEAR(found.relative, 0.05, 0.05 * 0.06) << seed;
+  }
+}
+
+TEST(EstimateError, NoWideNormalWhereNoneIs) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const ErrorModel found = estimate_error_model(kTruth, all_samples(noisy(kTruth, {}, seed)), ErrorModel(0.3, 1e-3));
+    EXPECT_EQ(found.outlier_share, 0.0) << seed;
+  }
+}
+
+// Errors of Student's t with three degrees: tails of every size, which two normal distributions do not have.
+TEST(EstimateError, StudentsTailsStayStudents) {
+  int students = 0;
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    std::chi_squared_distribution<double> chi_squared(3.0);
+    Observations observations = noisy(kTruth, {0.0, 0.0, 0.0, 0.0}, seed);
+    for (Observation& sample : observations.samples) {
+      const double stretch = std::sqrt(3.0 / chi_squared(random));
+      for (float& r : sample.reflectance) r *= static_cast<float>(1.0 + 0.03 * stretch * normal(random));
+    }
+    students += estimate_error_model(kTruth, all_samples(observations), ErrorModel(0.3, 1e-3)).outlier_share == 0.0;
+  }
+  EXPECT_GE(students, 9);
 }
 
 TEST(EstimateError, SamplesOfALumitexelThatErrAsOneCountLess) {
