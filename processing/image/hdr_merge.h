@@ -8,7 +8,10 @@
 // Samples from LinearSensor::usable_below_dn() on are censored: they say "at least so much". Leaving them out would
 // prefer low samples where an exposure's expectation lies near the bound, so there (and only there) their probability
 // joins the likelihood, Tobin's model. The error is within 1.05 of the bracket's Cramer-Rao bound (tests/bench/hdr_bound)
-// but for some 1.5 % of radiance about each exposure's limit: up to 1.7 there, less than 1 just above, 0.99 over both.
+// but for some 1.5 % of radiance about each exposure's limit: exposures at ratios of 8, up to 1.7 there, less than 1 just
+// above, 0.99 over both; 1.3 at ratios of 4 and 1.1 at 2. No estimator can do better than 1.048, 1.002 and 0.99 there at
+// every radiance (tests/bench/saturation_limit), and that one is biased by a third to half of the bound wherever an
+// exposure is within ten of its standard deviations of its limit; this one only within two and a half.
 // In the shortest exposure nothing tells a pixel that came out low from a dimmer one; unflagged pixels at its very
 // limit are low by up to 0.8 standard deviations, which their variance covers: as a mean square error it is right.
 #pragma once

@@ -38,11 +38,58 @@ TEST(HdrMergeExtremes, OneExposure) {
   EXPECT_NEAR(chi_square(merged_flat({0.1}, 20'000.0, 1), 20'000.0), 1.0, kChiSquareTolerance);
 }
 
-TEST(HdrMergeExtremes, ThirtyExposures) {
+std::vector<double> thirty_exposures_s() {
   std::vector<double> exposures_s;
   for (int i = 0; i < 30; ++i) exposures_s.push_back(1e-4 * std::pow(1.4, i));  // to 1.7 s
+  return exposures_s;
+}
+
+TEST(HdrMergeExtremes, ThirtyExposures) {
+  const std::vector<double> exposures_s = thirty_exposures_s();
   for (const double rate : {100.0, 1e5})
     EXPECT_NEAR(chi_square(merged_flat(exposures_s, rate, 2), rate), 1.0, kChiSquareTolerance) << rate;
+}
+
+// At the light that just fills the well in one of them. The shorter ones know nearly as much: no more than the bound's
+// normal noise is seen, where brackets of wider ratios depart from it (tests/bench/saturation_limit).
+TEST(HdrMergeExtremes, ThirtyExposuresAtTheLimitOfOne) {
+  const std::vector<double> exposures_s = thirty_exposures_s();
+  const double range_dn = test_sensor().clip_dn - test_sensor().black_level_dn;
+  for (const std::size_t limit : {10u, 20u, 29u}) {
+    const double rate = range_dn / exposures_s[limit];
+    EXPECT_NEAR(chi_square(merged_flat(exposures_s, rate, 12), rate), 1.0, kChiSquareTolerance) << limit;
+  }
+}
+
+// A single exposure whose limit the light just reaches: half of its pixels are flagged, the others low, within their
+// sigma.
+TEST(HdrMergeExtremes, OneExposureAtItsLimit) {
+  const double rate = (test_sensor().clip_dn - test_sensor().black_level_dn) / 0.1;
+  const MosaicRadiance merged = merged_flat({0.1}, rate, 13);
+  double sum = 0.0, usable = 0.0;
+  for (std::size_t i = 0; i < merged.value.size(); ++i) {
+    if (merged.flags[i] == kPixelSaturated) continue;
+    ASSERT_EQ(merged.flags[i], 0);
+    sum += std::pow(static_cast<double>(merged.value[i]) - rate, 2) / static_cast<double>(merged.variance[i]);
+    usable += 1.0;
+  }
+  // The bound lies 6.5 times 3 DN of read noise below the clip, of 111 DN of shot noise: 43 % are below it.
+  EXPECT_NEAR(usable / kPixels, 0.43, 5.0 * std::sqrt(0.25 / kPixels));
+  // Of the normal's tail below -0.18 the mean square is 1.13.
+  EXPECT_NEAR(sum / usable, 1.13, 5.0 * std::sqrt(2.0 / usable));
+}
+
+TEST(HdrMergeExtremes, OneAndThirtySaturatedOrBlackFramesAreFlagged) {
+  for (const std::vector<double>& exposures_s : {std::vector<double>{0.1}, thirty_exposures_s()}) {
+    const MosaicRadiance bright = merged_flat(exposures_s, 1e10, 14), black = merged_flat(exposures_s, 0.0, 15);
+    int dark = 0;
+    for (std::size_t i = 0; i < bright.value.size(); ++i) {
+      ASSERT_EQ(bright.flags[i], kPixelSaturated);
+      ASSERT_TRUE(std::isfinite(bright.value[i]) && std::isfinite(black.value[i]));
+      dark += black.flags[i] == kPixelDark ? 1 : 0;
+    }
+    EXPECT_GT(dark, 0.995 * kPixels) << exposures_s.size();  // 3 sigma: 0.13 % are not
+  }
 }
 
 TEST(HdrMergeExtremes, ExposuresInTheRatioOfAHundredThousand) {
