@@ -98,7 +98,7 @@ std::string views_section(const CalibrationSummary& summary) {
     const Eigen::Vector3d& at = light.position_in_rig;
     strays.push_back("Stray light at (" + html::number(at.x()) + ", " + html::number(at.y()) + ", " + html::number(at.z()) +
                      ") m in the rig's frame, sigma " + html::number(1e3 * light.sigma_m) + " mm, on the spheres of " +
-                     std::to_string(light.views.size()) + " views: it is in their photographs too; move or cover it.");
+                     std::to_string(light.views.size()) + " views: it is in their photographs too, and on the gray card, so the scale is wrong. Move or cover it.");
   }
   const std::string problem =
       summary.pose_problem.empty() ? "" : " Poses are the rig description's: " + summary.pose_problem;

@@ -51,9 +51,10 @@ std::optional<Figures> light_error_mm(const json& truth, const CalibrationSummar
   std::vector<double> errors;
   for (const LightSummary& light : summary.lights) {
     const auto found = lights.find(light.view);
-    if (found == lights.end() || light.highlights == 0) continue;
+    const std::optional<Eigen::Vector3d> measured = position(light);
+    if (found == lights.end() || !measured) continue;
     const auto p = found->second.at("position_m").get<std::array<double, 3>>();
-    errors.push_back(1e3 * (position(light) - Eigen::Vector3d(p[0], p[1], p[2])).norm());
+    errors.push_back(1e3 * (*measured - Eigen::Vector3d(p[0], p[1], p[2])).norm());
   }
   return figures_of(std::move(errors));
 }
@@ -130,8 +131,13 @@ void tell(std::ostream& text, const char* what, const std::optional<Figures>& fi
 }
 
 TruthComparison compare(const json& truth, const CalibratedSession& session, const CalibrationSummary& summary) {
-  const auto lights = light_error_mm(truth, summary, [](const LightSummary& l) { return l.position_in_world; });
-  const auto alone = light_error_mm(truth, summary, [](const LightSummary& l) { return l.spheres_alone_in_world; });
+  const auto known = [](const Eigen::Vector3d& position, double sigma_m) {
+    return sigma_m > 0.0 ? std::optional(position) : std::nullopt;
+  };
+  const auto lights = light_error_mm(truth, summary, [&](const LightSummary& l) { return known(l.position_in_world, l.sigma_m); });
+  const auto alone = light_error_mm(truth, summary, [&](const LightSummary& l) {
+    return known(l.spheres_alone_in_world, l.spheres_alone_sigma_m);
+  });
   const PoseErrors poses = pose_errors(truth, session);
   const std::optional<Figures> irradiance = irradiance_error(truth, session);
   std::ostringstream text;

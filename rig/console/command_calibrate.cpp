@@ -38,7 +38,7 @@ json lights_json(const CalibrationSummary& summary) {
          {"highlights", light.highlights},
          {"outliers", light.outliers},
          {"residual_px", light.residual_px},
-         {"spheres_alone_m", light.highlights > 0 ? vector_json(light.spheres_alone_in_world) : json(nullptr)},
+         {"spheres_alone_m", light.spheres_alone_sigma_m > 0 ? vector_json(light.spheres_alone_in_world) : json(nullptr)},
          {"spheres_alone_sigma_m", known_or_null(light.spheres_alone_sigma_m)}});
   }
   return lights;
@@ -151,7 +151,7 @@ void describe_stray(const StrayLightSummary& light, std::ostream& text) {
   text << "  stray light at (" << at.x() << ", " << at.y() << ", " << at.z() << ") m in the rig's frame, sigma " << 1e3 * light.sigma_m
        << " mm, on the spheres of";
   for (const std::string& view : light.views) text << ' ' << view;
-  text << ": it is in these photographs too; move or cover it\n";
+  text << ": it is in these photographs too, and on the gray card, so the scale is wrong; move or cover it\n";
 }
 
 void describe(const CalibratedSession& session, const CalibrationSummary& summary, std::ostream& text) {

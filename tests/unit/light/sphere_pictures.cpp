@@ -2,8 +2,6 @@
 
 #include <Eigen/LU>
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "processing/calibration/lens/rig_camera.h"
 #include "rig/new_session.h"
@@ -58,16 +56,6 @@ bool of_spheres(const Shot& shot, double ring_s, double point_s) {
          (shot.kind == ShotKind::Dark && (std::abs(exposure_s - ring_s) < 1e-9 || std::abs(exposure_s - point_s) < 1e-9));
 }
 
-void write_picture(const MosaicRadiance& image, const std::string& file) {
-  cv::Mat picture(image.height, image.width, CV_32F, const_cast<float*>(image.value.data()));
-  cv::Mat shown;
-  double most = 0.0;
-  cv::minMaxLoc(picture, nullptr, &most);
-  cv::pow(cv::max(picture, 0.0) / most, 0.35, shown);
-  shown.convertTo(shown, CV_8U, 255.0);
-  cv::imwrite(file, shown);
-}
-
 }  // namespace
 
 double PicturedLights::error_m(std::size_t view) const {
@@ -80,7 +68,7 @@ double PicturedLights::squared_sigmas(std::size_t view) const {
   return error.dot(light.covariance.inverse() * error);
 }
 
-PicturedLights photograph_spheres(const std::string& changes, int views, const std::string& pictures) {
+PicturedLights photograph_spheres(const std::string& changes, int views) {
   const TemporaryFolder folder;
   SessionContent content;
   content.documents["rig.toml"] = rig_text(changes, folder);
@@ -103,9 +91,6 @@ PicturedLights photograph_spheres(const std::string& changes, int views, const s
   for (std::size_t v = 0; v < records.size(); ++v) {
     records[v].spheres = {frames.of(ShotKind::SpheresRing, plan.views[v].name)[0],
                           frames.of(ShotKind::SpheresPoint, plan.views[v].name)[0]};
-    if (pictures.empty()) continue;
-    write_picture(reader.read(records[v].spheres.ring), pictures + "_ring_" + std::to_string(v) + ".png");
-    write_picture(reader.read(records[v].spheres.point), pictures + "_point_" + std::to_string(v) + ".png");
   }
   std::vector<SphereShots> shots;
   for (const ViewFrames& view : records) shots.push_back(view.spheres);

@@ -23,10 +23,10 @@ struct PicturedLights {
   double error_m(std::size_t view) const;
 };
 
-// The bench of config/rigs/simulated.toml with the dotted keys in `changes` (TOML, one a line) instead, as it really stands: where its arm
-// is off, and nothing else; of the picture its upper 200 rows, where the spheres are. Photographs the spheres in so many views (at most 4: turntable a quarter on each, lights to
+// The bench of config/rigs/simulated.toml with the dotted keys in `changes` (TOML, one a line) instead, as it really stands: where its
+// arm is off, and nothing else; of the picture its upper 200 rows, where the spheres are. Photographs the spheres in so many views (at
+// most 4: turntable a quarter on each, lights to
 // all sides) and runs the light step on the frames. Throws what that throws.
-// pictures: what the names of PNGs to look at begin with; empty: none are written.
-PicturedLights photograph_spheres(const std::string& changes, int views = 2, const std::string& pictures = "");
+PicturedLights photograph_spheres(const std::string& changes, int views = 2);
 
 }  // namespace lumitexel
