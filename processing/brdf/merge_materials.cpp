@@ -11,6 +11,7 @@
 #include "processing/brdf/estimate_error.h"
 #include "processing/brdf/left_out_error.h"
 #include "processing/brdf/misfit.h"
+#include "processing/brdf/shared_brightness.h"
 
 namespace lumitexel {
 namespace {
@@ -31,7 +32,8 @@ struct Merge {
   Pair pair;
   MaterialModel merged;
   double loss = std::numeric_limits<double>::infinity();  // of log likelihood
-  bool needed_apart = true;
+  double samples = 0;   // of the pair
+  double price = 0;     // in log likelihood, of keeping the two apart
 };
 
 double distance(const Brdf& a, const Brdf& b, const Observations& observations) {
@@ -117,9 +119,21 @@ Merge try_merge(const Mixture& mixture, const Observations& observations, const 
   if (options.estimate_error) merge.merged.error.independence = independence_of(merge.merged.brdf, samples, merge.merged.error);
   const int parameters = parameters_of(merge.merged.brdf, refit_options(merge.merged, options)).size() + 1;  // and its share
   const double independence = options.estimate_error ? merge.merged.error.independence : 1.0;
-  merge.needed_apart = 2.0 * independence * merge.loss > parameters * std::log(std::max(2.0, count * independence)) &&
-                       merge.loss > kLeastGain * count;
+  merge.samples = count;
+  merge.price = parameters * std::log(std::max(2.0, count * independence)) / (2.0 * independence);
   return merge;
+}
+
+bool needed_apart(const Merge& merge, const Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
+                  const Responsibilities& r, const MaterialFitOptions& options) {
+  const auto needed = [&](double gain) { return gain > merge.price && gain > kLeastGain * merge.samples; };
+  if (!needed(merge.loss) || !options.estimate_error) return needed(merge.loss);
+  const double first = mixture.share[merge.pair.first], second = mixture.share[merge.pair.second];
+  const Mixture parts{{mixture.materials[merge.pair.first], mixture.materials[merge.pair.second]},
+                      {first / (first + second), second / (first + second)}};
+  std::vector<double> weight(lumitexels.size());
+  for (std::size_t l = 0; l < weight.size(); ++l) weight[l] = r.at(l, merge.pair.first) + r.at(l, merge.pair.second);
+  return needed(gain_beside_shared_brightness(merge.merged, parts, observations, lumitexels, weight));
 }
 
 // Nothing if `only_where_not_needed` and the evidence is for keeping every pair apart.
@@ -144,7 +158,9 @@ std::optional<Merge> cheapest_merge(const Mixture& mixture, const Observations& 
     pairs = best;
   }
   std::vector<Merge> merges = tried(pairs.size(), 1);
-  if (only_where_not_needed) std::erase_if(merges, [](const Merge& merge) { return merge.needed_apart; });
+  if (only_where_not_needed) {
+    std::erase_if(merges, [&](const Merge& merge) { return needed_apart(merge, mixture, observations, lumitexels, r, options); });
+  }
   if (merges.empty()) return std::nullopt;
   return *std::min_element(merges.begin(), merges.end(), [](const Merge& a, const Merge& b) { return a.loss < b.loss; });
 }

@@ -13,7 +13,7 @@ namespace lumitexel {
 //   fit_material.h), and
 //   kLeastGain of log likelihood for each sample of the pair: a difference too small to see is none, however many samples prove it.
 // The gain is measured with the pair's common error model, so that materials must differ in what they look like, not in how well
-// they are explained. Where the error model is given, and only stands in for causes unknown, left-out samples decide
+// they are explained; and it must be there, too, if lumitexels may differ by a common factor (shared_brightness.h). Where the error model is given, and only stands in for causes unknown, left-out samples decide
 // (left_out_error.h): the fewest materials that predict them no worse than any other number does, within kStandardErrors of the paired
 // difference.
 inline constexpr double kLeastGain = 0.02;

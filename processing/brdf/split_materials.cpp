@@ -72,7 +72,8 @@ std::optional<Split> best_split(const Part& part, const Observations& observatio
   std::optional<Split> best;
   for (const BrdfPair& pair : proposals(part.model, observations, members, alone, options)) {
     Mixture halves{{{pair.first, part.model.error}, {pair.second, part.model.error}}, {0.5, 0.5}};
-    const Responsibilities r = maximise_expectation(halves, observations, members, options, {kRounds, kSettled, false});
+    // Tails are asked for anew: what the whole took for outliers may be the smaller half.
+    const Responsibilities r = maximise_expectation(halves, observations, members, options, {kRounds, kSettled, true});
     const double gain = (r.log_likelihood - alone.log_likelihood) * static_cast<double>(part.members.size()) /
                         static_cast<double>(members.size());
     if (halves.materials.size() < 2 || (best && gain <= best->gain) || gain <= 0.0) continue;

@@ -1,6 +1,7 @@
 #include "rig/console/experiment_page.h"
 
 #include <cmath>
+#include <cstdio>
 
 #include "processing/report/html.h"
 #include "processing/report/page_style.h"
@@ -8,15 +9,20 @@
 namespace lumitexel {
 namespace {
 
-std::string percent(double share, int digits = 2) { return std::isfinite(share) ? html::number(100.0 * share, digits) + " %" : "–"; }
+std::string percent(double share, int decimals) {
+  if (!std::isfinite(share)) return "–";
+  char buffer[40];
+  std::snprintf(buffer, sizeof buffer, "%.*f %%", decimals, 100.0 * share);
+  return buffer;
+}
 
 std::string table_section(const std::vector<ExperimentRow>& rows) {
   std::vector<std::vector<std::string>> cells;
   for (const ExperimentRow& row : rows) {
     const ExperimentTally t = tally(row);
-    cells.push_back({row.name, std::to_string(t.found) + " of " + std::to_string(t.seeds), percent(t.worst_exponent), percent(t.worst_diffuse),
+    cells.push_back({row.name, std::to_string(t.found) + " of " + std::to_string(t.seeds), percent(t.worst_exponent, 3), percent(t.worst_diffuse, 3),
                      html::number(t.exponent_over_bound), html::number(t.diffuse_over_bound), std::to_string(t.under_paper),
-                     percent(t.short_of_bayes), percent(t.short_of_normal)});
+                     percent(t.short_of_bayes, 2), percent(t.short_of_normal, 2)});
   }
   return html::section(
       "All settings",

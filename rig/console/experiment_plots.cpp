@@ -32,7 +32,7 @@ std::string open_svg(double height_px) {
 }
 
 std::string text(double x, double y, const char* anchor, const std::string& words, const char* fill = "#444b54") {
-  return formatted("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\" fill=\"%s\">", x, y, anchor, fill) + html::escaped(words) + "</text>\n";
+  return formatted("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\" style=\"fill:%s\">", x, y, anchor, fill) + html::escaped(words) + "</text>\n";
 }
 
 std::string rule(const Panel& p, double value, const char* colour, const char* label) {
@@ -46,6 +46,12 @@ std::string horizontal_rules(const Panel& p, double step, int decimals) {
     svg += rule(p, i * step, "#d9dde2", formatted("%.*f", decimals, i * step).c_str());
   }
   return svg;
+}
+
+std::string goal_rule(const Panel& p) {
+  constexpr double kGoal = 1.1;
+  return formatted("<path d=\"M%.0f %.1f H%.0f\" stroke=\"#b4541a\"/>\n", kLeft_px, p.y(kGoal), kWidth_px - kRight_px) +
+         text(kWidth_px - kRight_px + 8, p.y(kGoal) + 4, "start", "goal 1.1", "#b4541a");
 }
 
 std::string side_title(const Panel& p, const std::string& words) {
@@ -149,7 +155,7 @@ std::string lobes_plot(const ExperimentRow& row) {
   }
   const double reach = 0.1 * std::ceil(11.0 * most);
   const Panel lobes{18, 250, 0, kMostOff_degrees, 0, 2.0 * std::ceil(0.55 * peak)}, off{286, 470, 0, kMostOff_degrees, -reach, reach};
-  std::string svg = open_svg(510) + horizontal_rules(lobes, 2.0, 0) + horizontal_rules(off, reach / 4.0, 3) + angle_axis(off);
+  std::string svg = open_svg(510) + horizontal_rules(lobes, 2.0, 0) + horizontal_rules(off, reach / 2.0, 2) + angle_axis(off);
   for (std::size_t k = 0; k < truth.size(); ++k) {
     Curve curve;
     for (const auto& [angle, unused] : bands[k].low) curve.emplace_back(angle, in_plane(truth[k], angle));
@@ -165,7 +171,7 @@ std::string bounds_plot(const ExperimentRow& row) {
   const auto scores = successes(row);
   if (scores.empty()) return "";
   const Panel p{18, 230, -0.7, 19.7, 0.0, 2.0};
-  std::string svg = open_svg(270) + horizontal_rules(p, 0.5, 1) + rule(p, 1.1, "#b4541a", "1.1");
+  std::string svg = open_svg(270) + horizontal_rules(p, 0.5, 1) + goal_rule(p);
   for (std::size_t k = 0; k < 5; ++k) {
     std::vector<double> exponent;
     for (const FiveMaterialsScore* s : scores) exponent.push_back(s->log_exponent_error[k]);

@@ -42,7 +42,9 @@ TEST(LafortuneBase, SlopeIsTheDifferenceQuotient) {
 }
 
 TEST(LobeKernels, PeakIsTheStrengthAndBelowZeroIsDark) {
-  const auto terms = lobe_family(BrdfFamily::Lafortune).terms;
+  const auto terms = [](double log_exponent, double phi, const LobeGeometry& geometry) {
+    return lobe_family(BrdfFamily::Lafortune).terms(log_exponent, phi, geometry);
+  };
   const LobeGeometry mirror = rounded_geometry({0.7, 0.7, 3.141592653589793});
   EXPECT_NEAR(terms(std::log(1e5), kMirrorAim, mirror).gain, 1.0, 1e-10);
   const LobeGeometry opposite = rounded_geometry({1.3, 1.3, 0.0});  // mirror gap 1.86: base below zero
