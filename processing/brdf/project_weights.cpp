@@ -3,6 +3,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <cmath>
 #include <limits>
 
@@ -29,15 +30,22 @@ std::vector<TexelPrior> candidate_priors() {
   return priors;
 }
 
-// Posterior one-sigma of the prediction, pooled over the texel's own samples, relative to the prediction.
-double relative_sigma(const TexelSystem& system, const NnlsSolution& solution, BasisMatrix matrix) {
+// The inverse, or where bases cannot be told apart the pseudo-inverse: what the samples' own predictions need of it is known all the same.
+BasisMatrix covariance_of(const BasisMatrix& matrix, bool rank_deficient) {
+  if (rank_deficient) return Eigen::CompleteOrthogonalDecomposition<BasisMatrix>(matrix).pseudoInverse();
+  return matrix.ldlt().solve(BasisMatrix::Identity(matrix.rows(), matrix.cols()));
+}
+
+// Posterior one-sigma of the prediction, pooled over the texel's own samples, relative to the prediction. Samples that err together tell
+// less than their number says.
+double relative_sigma(const TexelSystem& system, const NnlsSolution& solution, BasisMatrix matrix, double independence) {
   for (int i = 0; i < static_cast<int>(matrix.rows()); ++i) {
     if (solution.free >> i & 1u) continue;
     matrix.row(i).setZero();
     matrix.col(i).setZero();
     matrix(i, i) = 1.0;
   }
-  const auto decomposition = matrix.ldlt();
+  const BasisMatrix covariance = covariance_of(matrix, solution.rank_deficient);
   double variance = 0.0, square = 1e-30;
   for (const SampleEquations& sample : system.samples) {
     for (Eigen::Index c = 0; c < sample.whitened.rows(); ++c) {
@@ -46,11 +54,11 @@ double relative_sigma(const TexelSystem& system, const NnlsSolution& solution, B
       for (int i = 0; i < static_cast<int>(direction.size()); ++i) {
         if (!(solution.free >> i & 1u)) direction[i] = 0.0;
       }
-      variance += direction.dot(decomposition.solve(direction));
+      variance += direction.dot(covariance * direction);
       square += predicted * predicted;
     }
   }
-  const double relative = std::sqrt(variance / square);
+  const double relative = std::sqrt(variance / independence / square);
   return std::isfinite(relative) ? relative : 1.0;  // nothing is known
 }
 
@@ -111,7 +119,7 @@ TexelWeights project_texel(std::span<const Observation> samples, int channels, c
   for (std::size_t k = 0; k < basis.size(); ++k) {
     result.weight[k] = static_cast<float>(solution.weights[static_cast<Eigen::Index>(k)]);
   }
-  result.relative_sigma = static_cast<float>(relative_sigma(system, solution, matrix));
+  result.relative_sigma = static_cast<float>(relative_sigma(system, solution, matrix, error.independence));
   return result;
 }
 

@@ -60,6 +60,29 @@ TEST(ProjectTexel, WithoutSamplesOrFreedomItIsTheMaterial) {
             (std::vector<float>{1.0f, 0.0f}));
 }
 
+// Two bases that are one: their weights are anybody's, what they predict is not.
+TEST(ProjectTexel, ItsSigmaStandsWhereBasesCannotBeToldApart) {
+  std::mt19937 random(11);
+  Observations observations;
+  add_mixture(observations, 1.0, 0.0, 8, 0.05, random);
+  const std::vector<Brdf> one{two_bases()[0]}, twice{two_bases()[0], two_bases()[0]};
+  const float alone = project_texel(observations.of(0), 3, one, kError, {kInfinity, kInfinity}).relative_sigma;
+  const float doubled = project_texel(observations.of(0), 3, twice, kError, {kInfinity, kInfinity}).relative_sigma;
+  EXPECT_NEAR(static_cast<double>(doubled / alone), 1.0, 1e-3);
+  EXPECT_LT(alone, 0.1f);
+}
+
+TEST(ProjectTexel, SamplesThatErrTogetherTellLess) {
+  std::mt19937 random(12);
+  Observations observations;
+  add_mixture(observations, 0.4, 0.7, 8, 0.05, random);
+  ErrorModel together = kError;
+  together.independence = 0.25;  // as if one in four were a sample of its own
+  const float apart = project_texel(observations.of(0), 3, two_bases(), kError, {kInfinity, kInfinity}).relative_sigma;
+  EXPECT_NEAR(static_cast<double>(project_texel(observations.of(0), 3, two_bases(), together, {kInfinity, kInfinity}).relative_sigma),
+              2.0 * static_cast<double>(apart), 1e-5);
+}
+
 TEST(ProjectTexel, AWideningPriorLetsTheDataSpeak) {
   std::mt19937 random(3);
   Observations observations;
