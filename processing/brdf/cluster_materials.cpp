@@ -83,8 +83,11 @@ Clustering cluster_materials(const Observations& observations, const LumitexelLi
   const LumitexelList finalists = members_of_all(label, all, mixture.materials.size(), options.final_lumitexels);
   r = maximise_expectation(mixture, observations, finalists, settled, {kFinalRounds, kFinalSettled});
   choose_lobes(mixture, observations, finalists, r, settled, fits);
-  result.single = fit_material(samples_of(observations, thinned(all, options.final_lumitexels)), observations.channels, &search.whole.brdf,
-                               settled).model;
+  // What all is measured against: the best mean prediction, whatever the materials were fitted by.
+  MaterialFitOptions mean = options.fit;
+  mean.estimate_error = false;
+  const Brdf* start = search.errors == ErrorSource::Given ? &search.whole : nullptr;  // else found by another measure
+  result.single = fit_material(samples_of(observations, thinned(all, options.final_lumitexels)), observations.channels, start, mean).model;
   for (std::size_t k = 0; k < mixture.materials.size(); ++k) result.materials.push_back({mixture.materials[k], fits[k], 0});
   // The finalists were chosen alike from every material: how common each is, all lumitexels say.
   set_shares(responsibilities(mixture, observations, all), mixture);

@@ -31,7 +31,7 @@ struct FittedMaterial {
 };
 
 struct Clustering {
-  MaterialModel single;                   // one BRDF for everything, where the splitting begins
+  MaterialModel single;                   // one BRDF for everything, the best mean prediction under the given error model
   std::vector<FittedMaterial> materials;  // fewer than asked for if the samples do not tell so many apart
   ErrorSource errors = ErrorSource::Given;  // which source it was
   MaterialFitOptions fit;                 // as every material was fitted at the end

@@ -25,7 +25,7 @@ MaterialSearch search_with(ErrorSource errors, const Observations& observations,
   search.fit.most_lobes = std::min(1, options.fit.most_lobes);
   search.fit.estimate_error = errors != ErrorSource::Given;
   const MaterialFit whole = fit_material(samples_of(observations, selection), observations.channels, nullptr, search.fit);
-  search.whole = whole.model;
+  search.whole = whole.model.brdf;
   search.mixture = split_materials(whole, observations, selection, most, search.fit);
   maximise_expectation(search.mixture, observations, selection, search.fit, {kSearchRounds, kSearchSettled});
   merge_materials(search.mixture, observations, selection, {options.materials, search.fit}, report);

@@ -10,7 +10,7 @@ namespace lumitexel {
 struct MaterialSearch {
   ErrorSource errors = ErrorSource::Given;  // never Auto
   MaterialFitOptions fit;                   // as every material was fitted
-  MaterialModel whole;                      // one for everything
+  Brdf whole;                               // one for everything, where the splitting began
   Mixture mixture;
 };
 
