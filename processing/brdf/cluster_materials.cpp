@@ -86,8 +86,8 @@ Clustering cluster_materials(const Observations& observations, const LumitexelLi
   // What all is measured against: the best mean prediction, whatever the materials were fitted by.
   MaterialFitOptions mean = options.fit;
   mean.estimate_error = false;
-  const Brdf* start = search.errors == ErrorSource::Given ? &search.whole : nullptr;  // else found by another measure
-  result.single = fit_material(samples_of(observations, thinned(all, options.final_lumitexels)), observations.channels, start, mean).model;
+  const Brdf start = fit_material(samples_of(observations, selection), observations.channels, nullptr, mean).model.brdf;
+  result.single = fit_material(samples_of(observations, thinned(all, options.final_lumitexels)), observations.channels, &start, mean).model;
   for (std::size_t k = 0; k < mixture.materials.size(); ++k) result.materials.push_back({mixture.materials[k], fits[k], 0});
   // The finalists were chosen alike from every material: how common each is, all lumitexels say.
   set_shares(responsibilities(mixture, observations, all), mixture);

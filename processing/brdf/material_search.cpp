@@ -20,12 +20,11 @@ MaterialSearch search_with(ErrorSource errors, const Observations& observations,
                            const ClusterOptions& options, const std::function<void(int)>& report) {
   const int wanted = options.materials > 0 ? options.materials : kMostMaterials;
   const int most = wanted == 1 ? 1 : std::min(2 * wanted, wanted + kMostExtra);
-  MaterialSearch search{errors, options.fit, {}, {}};
+  MaterialSearch search{errors, options.fit, {}};
   search.fit.choose_lobes = false;
   search.fit.most_lobes = std::min(1, options.fit.most_lobes);
   search.fit.estimate_error = errors != ErrorSource::Given;
   const MaterialFit whole = fit_material(samples_of(observations, selection), observations.channels, nullptr, search.fit);
-  search.whole = whole.model.brdf;
   search.mixture = split_materials(whole, observations, selection, most, search.fit);
   maximise_expectation(search.mixture, observations, selection, search.fit, {kSearchRounds, kSearchSettled});
   merge_materials(search.mixture, observations, selection, {options.materials, search.fit}, report);

@@ -10,7 +10,6 @@ namespace lumitexel {
 struct MaterialSearch {
   ErrorSource errors = ErrorSource::Given;  // never Auto
   MaterialFitOptions fit;                   // as every material was fitted
-  Brdf whole;                               // one for everything, where the splitting began
   Mixture mixture;
 };
 
