@@ -146,7 +146,7 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
                       "draft: materials learnt on 2,000 surface points and fitted to 2,000 each; standard: 10,000 and 5,000; "
                       "reference: all")
       ->capture_default_str();
-  command->add_option("--materials", settings->materials, "How many materials to look for, 1 to 64, or auto: as many as the samples ask for, at most 12")->capture_default_str();
+  command->add_option("--materials", settings->materials, "How many materials to look for, 1 to 64, or auto: as many as the samples ask for, at most 20")->capture_default_str();
   command->add_option("--method", settings->method,
                       "lumitexel, or paper: clustering, fits and projection as published (Lensch et al. 2003), for comparison")
       ->capture_default_str();

@@ -107,7 +107,8 @@ void add_render_command(CLI::App& app, CommandAction& action) {
   command->add_option("--light", settings->given.light, "Point light \"x,y,z\" in metres, with --camera");
   command->add_option("--light-intensity", settings->given.light_intensity,
                       "W/sr, one number or one a channel; default: white diffuse at the target has radiance 1");
-  command->add_option("--stage", settings->stage, "single, cluster, projection or pfa (default: all that the model holds)");
+  command->add_option("--stage", settings->stage, "single (one BRDF for all), cluster (one a material), projection (a mixture a texel) or pfa (of principal functions, if "
+                      "the fit sought them); default: all that the model holds");
   command->add_option("--aov", settings->aov, "radiance, normal, position, cluster, samples or sigma")
       ->capture_default_str();
   command->add_option("--spp", settings->samples_per_pixel, "Rays a pixel for radiance; 1 is the pixel's centre")
