@@ -3,7 +3,8 @@
 // Where BRDFs explain samples down to noise, estimated error models and robust fits are the efficient ones. Where the mesh's normals are
 // wrong or the family is not the material's, a highlight is missed or hit by samples of one material, residuals are skewed and as large as
 // the signal; a robust fit then takes the highlight for an outlier, and renders too dark. Which of the two it is shows in samples that
-// were left out.
+// were left out. Left out of what: of the choice which material a lumitexel is. The materials themselves have learnt from all of them, and
+// lumitexels count as independent although neighbours share a mesh's wrong normals: both make the choice surer of itself than it should be.
 #pragma once
 
 #include "processing/brdf/mixture.h"

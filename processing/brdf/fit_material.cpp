@@ -104,8 +104,17 @@ MaterialFit fit_material(FitSamples samples, int channels, const Brdf* start, co
   for (int lobes = 1; lobes <= options.most_lobes; ++lobes) {
     const bool started = usable && static_cast<int>(start->lobes.size()) == lobes;
     grown = started ? refined({*start, grown.model.error}, samples, options) : with_lobe(grown, samples, options);
-    if (!options.choose_lobes || prefers(best, grown, samples, options)) best = grown;
-    else break;
+    if (!options.choose_lobes || prefers(best, grown, samples, options)) {
+      best = grown;
+      continue;
+    }
+    // Growth has ended; a start of more lobes is asked all the same.
+    const int of_start = usable ? static_cast<int>(start->lobes.size()) : 0;
+    if (of_start > lobes && of_start <= options.most_lobes) {
+      MaterialFit more = refined({*start, best.model.error}, samples, options);
+      if (prefers(best, more, samples, options)) best = more;
+    }
+    break;
   }
   set_criterion(best, samples, options.estimate_error ? best.model.error.independence : 1.0, options);
   return best;

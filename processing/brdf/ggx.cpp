@@ -9,17 +9,11 @@
 //   G / (4 cos_i cos_o) = 1/2 / (cos_o sqrt(alpha^2 + (1 - alpha^2) cos_i^2) + cos_i sqrt(alpha^2 + (1 - alpha^2) cos_o^2))
 #include <cmath>
 
+#include "processing/brdf/half_vector_family.h"
 #include "processing/brdf/lobe_family.h"
 
 namespace lumitexel {
 namespace {
-
-constexpr double kPi = 3.141592653589793;
-constexpr double kLeastAlong2 = 1e-60;  // both directions within 1e-30 of the surface's plane: dark, rather than a quotient of zeros
-constexpr double kLeastLogAlpha = -6.907755278982137;  // 1e-3
-// alpha = 0.9, 0.6, 0.4, 0.25, 0.15, 0.08, 0.04
-constexpr double kLogShapes[] = {-0.10536051565782628, -0.5108256237659907, -0.916290731874155, -1.3862943611198906,
-                                 -1.8971199848858813,  -2.5257286443082556, -3.2188758248682006};
 
 struct Facets {
   double value = 0, by_log_alpha = 0;  // D G / (4 cos_i cos_o) and its slope
@@ -55,10 +49,8 @@ LobeSlopes slopes(const LobeShape& shape, const LobeGeometry& geometry) {
   return {f.value * (1.0 - f.schlick), f.value * f.schlick, f.by_log_alpha * (1.0 - f.schlick), f.by_log_alpha * f.schlick, 0.0};
 }
 
-double most_log_strength(double, double energy) { return std::log(energy); }
-
 }  // namespace
 
-const LobeFamily kGgxFamily{"ggx", false, kLeastLogAlpha, 0.0, kMirrorAim, kMirrorAim, most_log_strength, kLogShapes, terms, slopes};
+const LobeFamily kGgxFamily = half_vector_family("ggx", terms, slopes);
 
 }  // namespace lumitexel

@@ -11,7 +11,6 @@ struct SquaredError {
   double clipped = 0, root = 0;
   SquaredError& operator+=(const SquaredError& other);
 };
-SquaredError squared_error(const ChannelValues& predicted, const Observation& sample, int channels, double clip);
 
 // The 99.9th percentile of the lumitexels' reflectances.
 double clip_level(const Observations& observations, const LumitexelList& lumitexels);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <span>
 
 #include "processing/brdf/estimate_error.h"
 #include "processing/brdf/left_out_error.h"
@@ -124,6 +125,16 @@ Merge try_merge(const Mixture& mixture, const Observations& observations, const 
   return merge;
 }
 
+// Each of the pairs merged, on one in `of` of the lumitexels.
+std::vector<Merge> tried(std::span<const Pair> pairs, const Mixture& mixture, const Observations& observations,
+                         const LumitexelList& lumitexels, const Responsibilities& r, std::size_t of, const MaterialFitOptions& options) {
+  std::vector<Merge> merges(pairs.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t p) {
+    merges[p] = try_merge(mixture, observations, lumitexels, r, pairs[p], of, options);
+  });
+  return merges;
+}
+
 bool needed_apart(const Merge& merge, const Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
                   const Responsibilities& r, const MaterialFitOptions& options) {
   const auto needed = [&](double gain) { return gain > merge.price && gain > kLeastGain * merge.samples; };
@@ -136,33 +147,35 @@ bool needed_apart(const Merge& merge, const Mixture& mixture, const Observations
   return needed(gain_beside_shared_brightness(merge.merged, parts, observations, lumitexels, weight));
 }
 
-// Nothing if `only_where_not_needed` and the evidence is for keeping every pair apart.
-std::optional<Merge> cheapest_merge(const Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
-                                    const Responsibilities& r, bool only_where_not_needed, const MaterialFitOptions& options) {
-  std::vector<Pair> pairs = likely_pairs(mixture, observations);
-  const auto tried = [&](std::size_t count, std::size_t of) {
-    std::vector<Merge> merges(count);
-    oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t p) {
-      merges[p] = try_merge(mixture, observations, lumitexels, r, pairs[p], of, options);
-    });
-    return merges;
-  };
-  const std::size_t of = lumitexels.size() / kLumitexelsForRanking + 1;
-  if (of > 1) {  // a part of the lumitexels tells which few are worth all of them
-    const std::vector<Merge> ranking = tried(pairs.size(), of);
-    std::vector<std::size_t> order(pairs.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return ranking[a].loss < ranking[b].loss; });
-    std::vector<Pair> best;
-    for (std::size_t i = 0; i < std::min(kMostTriedOnAll, order.size()); ++i) best.push_back(pairs[order[i]]);
-    pairs = best;
-  }
-  std::vector<Merge> merges = tried(pairs.size(), 1);
+// The cheapest of the pairs, tried on all lumitexels. Nothing if `only_where_not_needed` and the evidence is for keeping each apart.
+std::optional<Merge> cheapest_of(std::span<const Pair> pairs, const Mixture& mixture, const Observations& observations,
+                                 const LumitexelList& lumitexels, const Responsibilities& r, bool only_where_not_needed,
+                                 const MaterialFitOptions& options) {
+  std::vector<Merge> merges = tried(pairs, mixture, observations, lumitexels, r, 1, options);
   if (only_where_not_needed) {
     std::erase_if(merges, [&](const Merge& merge) { return needed_apart(merge, mixture, observations, lumitexels, r, options); });
   }
   if (merges.empty()) return std::nullopt;
   return *std::min_element(merges.begin(), merges.end(), [](const Merge& a, const Merge& b) { return a.loss < b.loss; });
+}
+
+// Nothing if `only_where_not_needed` and the evidence is for keeping every pair apart.
+std::optional<Merge> cheapest_merge(const Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
+                                    const Responsibilities& r, bool only_where_not_needed, const MaterialFitOptions& options) {
+  std::vector<Pair> pairs = likely_pairs(mixture, observations);
+  const std::size_t of = lumitexels.size() / kLumitexelsForRanking + 1;
+  std::size_t first = pairs.size();
+  if (of > 1) {  // a part of the lumitexels tells which few are worth all of them
+    std::vector<Merge> ranking = tried(pairs, mixture, observations, lumitexels, r, of, options);
+    std::stable_sort(ranking.begin(), ranking.end(), [](const Merge& a, const Merge& b) { return a.loss < b.loss; });
+    std::transform(ranking.begin(), ranking.end(), pairs.begin(), [](const Merge& merge) { return merge.pair; });
+    first = std::min(kMostTriedOnAll, pairs.size());
+  }
+  const std::span<const Pair> all(pairs);
+  const auto cheapest = cheapest_of(all.first(first), mixture, observations, lumitexels, r, only_where_not_needed, options);
+  if (cheapest) return cheapest;
+  // A pair that costs much may still be one material in many shades: nothing ends before each has been asked.
+  return cheapest_of(all.subspan(first), mixture, observations, lumitexels, r, only_where_not_needed, options);
 }
 
 void apply(const Merge& merge, Mixture& mixture) {

@@ -14,19 +14,28 @@ constexpr double kNoInformation = 1e-18;
 // Share of the diagonal at which a pivot is rounding; how far a ridge stays below the largest curvature.
 constexpr double kRankTolerance = 1e-13, kRidge = 1e-9;
 
+struct FreeSystem {
+  BasisMatrix matrix;
+  BasisVector right;
+};
+
+// The equations of the free unknowns; a held one has `diagonal` for its curvature and nothing else.
+FreeSystem free_system(const BasisMatrix& matrix, const BasisVector& right, unsigned free, double diagonal) {
+  FreeSystem reduced{matrix, right};
+  for (Eigen::Index i = 0; i < right.size(); ++i) {
+    if (free >> i & 1u) continue;
+    reduced.matrix.row(i).setZero();
+    reduced.matrix.col(i).setZero();
+    reduced.matrix(i, i) = diagonal;
+    reduced.right[i] = 0.0;
+  }
+  return reduced;
+}
+
 // Unconstrained optimum over the free unknowns; the others are zero.
 BasisVector solve_free(const BasisMatrix& matrix, const BasisVector& right, unsigned free) {
-  const Eigen::Index n = right.size();
-  BasisMatrix reduced = matrix;
-  BasisVector target = right;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (free >> i & 1u) continue;
-    reduced.row(i).setZero();
-    reduced.col(i).setZero();
-    reduced(i, i) = 1.0;
-    target[i] = 0.0;
-  }
-  return reduced.ldlt().solve(target);
+  const FreeSystem reduced = free_system(matrix, right, free, 1.0);
+  return reduced.matrix.ldlt().solve(reduced.right);
 }
 
 // The held unknown whose growth lowers the cost fastest; -1 if none does.
@@ -97,16 +106,9 @@ bool lacks_rank(const BasisMatrix& matrix) {
 // Unconstrained optimum of least norm over the free unknowns.
 BasisVector least_norm_free(const BasisMatrix& matrix, const BasisVector& right, unsigned free) {
   const Eigen::Index n = right.size();
-  BasisMatrix reduced = matrix;
-  BasisVector target = right;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (free >> i & 1u) continue;
-    reduced.row(i).setZero();
-    reduced.col(i).setZero();
-    target[i] = 0.0;
-  }
-  const Eigen::SelfAdjointEigenSolver<BasisMatrix> eigen(reduced);
-  BasisVector parts = eigen.eigenvectors().transpose() * target;
+  const FreeSystem reduced = free_system(matrix, right, free, 0.0);
+  const Eigen::SelfAdjointEigenSolver<BasisMatrix> eigen(reduced.matrix);
+  BasisVector parts = eigen.eigenvectors().transpose() * reduced.right;
   const double least = kRankTolerance * static_cast<double>(n) * std::max(0.0, eigen.eigenvalues().maxCoeff());
   for (Eigen::Index i = 0; i < n; ++i) parts[i] = eigen.eigenvalues()[i] > least ? parts[i] / eigen.eigenvalues()[i] : 0.0;
   return eigen.eigenvectors() * parts;

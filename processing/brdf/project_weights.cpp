@@ -36,9 +36,9 @@ BasisMatrix covariance_of(const BasisMatrix& matrix, bool rank_deficient) {
   return matrix.ldlt().solve(BasisMatrix::Identity(matrix.rows(), matrix.cols()));
 }
 
-// Posterior one-sigma of the prediction, pooled over the texel's own samples, relative to the prediction. Samples that err together tell
-// less than their number says.
-double relative_sigma(const TexelSystem& system, const NnlsSolution& solution, BasisMatrix matrix, double independence) {
+// Posterior one-sigma of the prediction, pooled over the texel's own samples, relative to the prediction. matrix: the posterior's inverse
+// covariance.
+double relative_sigma(const TexelSystem& system, const NnlsSolution& solution, BasisMatrix matrix) {
   for (int i = 0; i < static_cast<int>(matrix.rows()); ++i) {
     if (solution.free >> i & 1u) continue;
     matrix.row(i).setZero();
@@ -58,7 +58,7 @@ double relative_sigma(const TexelSystem& system, const NnlsSolution& solution, B
       square += predicted * predicted;
     }
   }
-  const double relative = std::sqrt(variance / independence / square);
+  const double relative = std::sqrt(variance / square);
   return std::isfinite(relative) ? relative : 1.0;  // nothing is known
 }
 
@@ -111,15 +111,17 @@ TexelWeights project_texel(std::span<const Observation> samples, int channels, c
   result.relative_sigma = static_cast<float>(samples.empty() ? 1.0 : error.relative);
   if (samples.empty() || nothing_varies(prior)) return result;
   const TexelSystem system = texel_system(samples, channels, basis, material, error);
-  BasisMatrix matrix = system.matrix;
-  BasisVector right = system.right;
-  PriorPrecision(basis, channels).add_to(prior, matrix, right);
+  BasisMatrix matrix = system.matrix, known = error.independence * system.matrix;  // samples that err together tell less
+  BasisVector right = system.right, unused = system.right;
+  const PriorPrecision precision(basis, channels);
+  precision.add_to(prior, matrix, right);
+  precision.add_to(prior, known, unused);
   const NnlsSolution solution = solve_nnls(matrix, right);
   if (!solution.weights.allFinite()) return result;
   for (std::size_t k = 0; k < basis.size(); ++k) {
     result.weight[k] = static_cast<float>(solution.weights[static_cast<Eigen::Index>(k)]);
   }
-  result.relative_sigma = static_cast<float>(relative_sigma(system, solution, matrix, error.independence));
+  result.relative_sigma = static_cast<float>(relative_sigma(system, solution, known));
   return result;
 }
 

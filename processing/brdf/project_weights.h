@@ -25,8 +25,8 @@ struct TexelPrior {
 
 struct TexelWeights {
   std::vector<float> weight;     // of each basis, >= 0
-  float relative_sigma = 0;      // one-sigma of the predicted reflectance, relative: from the posterior; the error model's
-                                 // own where nothing may vary; 1 without samples or where the bases cannot be told apart
+  float relative_sigma = 0;      // one-sigma of the predicted reflectance, relative: from the posterior, in which samples count
+                                 // as often as they err independently; the error model's own where nothing may vary
 };
 
 inline bool nothing_varies(const TexelPrior& prior) { return prior.diffuse_width <= 0.0 && prior.gloss_width <= 0.0; }

@@ -5,17 +5,11 @@
 // with tan^2 = across^2 / along^2 and |wi + wo|^2 = across^2 + along^2 (lobe_geometry.h): nothing cancels, at any angle.
 #include <cmath>
 
+#include "processing/brdf/half_vector_family.h"
 #include "processing/brdf/lobe_family.h"
 
 namespace lumitexel {
 namespace {
-
-constexpr double kPi = 3.141592653589793;
-constexpr double kLeastAlong2 = 1e-60;  // both directions within 1e-30 of the surface's plane: dark, rather than a quotient of zeros
-constexpr double kLeastLogAlpha = -6.907755278982137;  // 1e-3
-// alpha = 0.9, 0.6, 0.4, 0.25, 0.15, 0.08, 0.04
-constexpr double kLogShapes[] = {-0.10536051565782628, -0.5108256237659907, -0.916290731874155, -1.3862943611198906,
-                                 -1.8971199848858813,  -2.5257286443082556, -3.2188758248682006};
 
 LobeSlopes slopes(const LobeShape& shape, const LobeGeometry& g) {
   const double alpha2 = shape.shape * shape.shape, along2 = g.along() * g.along();
@@ -31,10 +25,8 @@ LobeTerms terms(const LobeShape& shape, const LobeGeometry& geometry) {
   return {all.gain, all.offset};
 }
 
-double most_log_strength(double, double energy) { return std::log(energy); }
-
 }  // namespace
 
-const LobeFamily kWardFamily{"ward", false, kLeastLogAlpha, 0.0, kMirrorAim, kMirrorAim, most_log_strength, kLogShapes, terms, slopes};
+const LobeFamily kWardFamily = half_vector_family("ward", terms, slopes);
 
 }  // namespace lumitexel

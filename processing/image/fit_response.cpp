@@ -108,9 +108,17 @@ ResponseFit fit_response(const std::vector<std::vector<Frame>>& brackets, const 
   }
   if (result.chi_square < rare_chi_square(result.freedoms) || result.largest_departure < kNegligibleCurvature)
     return result;
-  result.iterations += add_kinks(fit);
-  result.kinks = fit.kinks();
-  if (result.kinks > 0) state_fit(fit, sensor, unit, result);
+  ResponseLeastSquares kinked = fit;
+  result.iterations += add_kinks(kinked);
+  if (kinked.kinks() > 0) {
+    ResponseFit with_kinks = result;
+    state_fit(kinked, sensor, unit, with_kinks);
+    if (with_kinks.determined) {
+      result = with_kinks;
+      result.kinks = kinked.kinks();
+      fit = std::move(kinked);
+    }
+  }
   result.curve = tabulated(fit, sensor, unit);
   return result;
 }

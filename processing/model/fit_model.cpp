@@ -138,6 +138,15 @@ void set_materials(const Clustering& clustering, const Atlas& atlas, const Lumit
   model.single = clustering.single.brdf;
 }
 
+// The paper's errors are as large everywhere as reflectance itself: no sample would be an outlier by them.
+std::vector<ErrorModel> outlier_errors(const Clustering& clustering, const ErrorModel& given, const FitOptions& options) {
+  std::vector<ErrorModel> errors;
+  for (const FittedMaterial& material : clustering.materials) {
+    errors.push_back(options.method == FitMethod::Paper ? given : material.model.error);
+  }
+  return errors;
+}
+
 std::vector<std::string> names_of(const std::vector<View>& views) {
   std::vector<std::string> names;
   for (const View& view : views) names.push_back(view.name);
@@ -200,7 +209,8 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
   summary.single = stage_error(model, FitStage::Single, observations, clustering.label, weights);
   summary.cluster = stage_error(model, FitStage::Cluster, observations, clustering.label, weights);
   fill_atlas(atlas, gathered.set, clustering.label, weights, projection, model);
-  summary.outliers = find_outliers(model, observations, clustering, weights, session.views.size());
+  summary.outliers = find_outliers(model, observations, outlier_errors(clustering, error, options), clustering.label, weights,
+                                    session.views.size());
   model.outliers_csv = outliers_csv(summary.outliers, names_of(session.views), texels_of(gathered.set), atlas.width);
   timer.end();
   summary.stages = timer.stages();

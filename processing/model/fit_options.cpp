@@ -22,4 +22,11 @@ FitOptions FitOptions::preset(const std::string& quality) {
   return options;
 }
 
+FitOptions as_published(FitOptions options) {
+  options.method = FitMethod::Paper;
+  options.shared_lobe_shape = false;
+  options.plain_projection = options.principal_functions = true;
+  return options;
+}
+
 }  // namespace lumitexel

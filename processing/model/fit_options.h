@@ -34,4 +34,7 @@ struct FitOptions {
   static FitOptions preset(const std::string& quality);
 };
 
+// The paper's method, complete and exactly as published: each channel a lobe of its own, least squares, principal functions always moved.
+FitOptions as_published(FitOptions options);
+
 }  // namespace lumitexel

@@ -46,9 +46,13 @@ void require_consistent(const Model& model) {
            map.data.size() == model.material.size() * static_cast<std::size_t>(channels);
   };
   std::size_t basis_size = 0;
-  for (const ModelMaterial& material : model.materials) basis_size = std::max(basis_size, material.basis.size());
+  bool bases_fit = true;
+  for (const ModelMaterial& material : model.materials) {
+    basis_size = std::max(basis_size, material.basis.size());
+    bases_fit = bases_fit && material.projection_basis.size() == (has_principal_functions(model) ? material.basis.size() : 0);
+  }
   const std::size_t texels = static_cast<std::size_t>(model.width) * static_cast<std::size_t>(model.height);
-  if (model.material.size() != texels || model.mesh.texcoords.size() != model.mesh.positions.size() ||
+  if (!bases_fit || model.material.size() != texels || model.mesh.texcoords.size() != model.mesh.positions.size() ||
       !fits(model.weights, static_cast<int>(basis_size)) ||
       (has_principal_functions(model) && !fits(model.projection_weights, static_cast<int>(basis_size))) || !fits(model.normal, 3) || !fits(model.uncertainty, 1) ||
       !fits(model.samples, 1)) {

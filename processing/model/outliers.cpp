@@ -37,29 +37,47 @@ double mean(const ChannelValues& values, int channels) {
   return sum / channels;
 }
 
-OutlierReason reason_of(double measured, double predicted, double diffuse, const LobeGeometry& geometry) {
-  if (std::abs(measured - predicted) < kSameBrightness * predicted) return OutlierReason::Colour;
+double scales_off(const ErrorModel& error, const Observation& sample, int channels, const ChannelValues& predicted) {
+  return std::sqrt(sample_misfit(error, sample, channels, predicted).squares / channels);
+}
+
+// Whether the sample would be an outlier if the prediction were as bright as it.
+bool is_of_another_colour(const ErrorModel& error, const Observation& sample, int channels, ChannelValues predicted, double factor) {
+  for (double& value : predicted) value *= factor;
+  return scales_off(error, sample, channels, predicted) > kOutlierScales;
+}
+
+OutlierReason reason_of_brightness(double measured, double predicted, double diffuse, const LobeGeometry& geometry) {
   if (measured > predicted) {
     return half_tangent_squared(geometry) < kHighlightTangentSquared ? OutlierReason::Highlight : OutlierReason::ExtraLight;
   }
-  return measured < 0.5 * diffuse ? OutlierReason::Dark : OutlierReason::NoHighlight;
+  if (measured < 0.5 * diffuse) return OutlierReason::Dark;
+  return predicted > 2.0 * diffuse ? OutlierReason::NoHighlight : OutlierReason::Dim;
+}
+
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char character : text) result += character == '"' ? std::string("\"\"") : std::string(1, character);
+  return result + "\"";
 }
 
 // The outliers among one lumitexel's samples.
-void look_at(std::size_t i, const Model& model, const Observations& observations, const Clustering& clustering,
+void look_at(std::size_t i, const ModelMaterial& material, const Observations& observations, const ErrorModel& error,
              const TexelWeights& weights, std::vector<Outlier>& found) {
-  const auto material = static_cast<std::size_t>(clustering.label[i]);
   const int channels = observations.channels;
   for (std::size_t s = observations.first[i]; s < observations.first[i + 1]; ++s) {
     const Observation& sample = observations.samples[s];
-    const Prediction prediction = predict(model.materials[material], weights, sample.geometry);
-    const double squares = sample_misfit(clustering.materials[material].model.error, sample, channels, prediction.all).squares;
-    const double scales = std::sqrt(squares / channels);
+    const Prediction prediction = predict(material, weights, sample.geometry);
+    const double scales = scales_off(error, sample, channels, prediction.all);
     if (!(scales > kOutlierScales)) continue;
     ChannelValues measured{};
     for (std::size_t c = 0; c < measured.size(); ++c) measured[c] = static_cast<double>(sample.reflectance[c]);
     const double m = mean(measured, channels), p = mean(prediction.all, channels);
-    found.push_back({i, observations.view[s], reason_of(m, p, mean(prediction.diffuse, channels), sample.geometry), scales, m, p});
+    const bool as_bright = std::abs(m - p) < kSameBrightness * p;
+    const OutlierReason reason = as_bright && is_of_another_colour(error, sample, channels, prediction.all, m / p)
+                                     ? OutlierReason::Colour
+                                     : reason_of_brightness(m, p, mean(prediction.diffuse, channels), sample.geometry);
+    found.push_back({i, observations.view[s], reason, scales, m, p});
   }
 }
 
@@ -69,6 +87,7 @@ const char* to_string(OutlierReason reason) {
   switch (reason) {
     case OutlierReason::Dark: return "dark";
     case OutlierReason::NoHighlight: return "no highlight";
+    case OutlierReason::Dim: return "dim";
     case OutlierReason::Highlight: return "highlight";
     case OutlierReason::ExtraLight: return "extra light";
     case OutlierReason::Colour: return "colour";
@@ -76,11 +95,12 @@ const char* to_string(OutlierReason reason) {
   return "unknown";
 }
 
-Outliers find_outliers(const Model& model, const Observations& observations, const Clustering& clustering,
-                       const std::vector<TexelWeights>& weights, std::size_t views) {
+Outliers find_outliers(const Model& model, const Observations& observations, const std::vector<ErrorModel>& errors,
+                       const std::vector<int>& label, const std::vector<TexelWeights>& weights, std::size_t views) {
   std::vector<std::vector<Outlier>> found(observations.lumitexels());
   for_each_block(observations.lumitexels(), [&](std::size_t i) {
-    look_at(i, model, observations, clustering, weights[i], found[i]);
+    const auto material = static_cast<std::size_t>(label[i]);
+    look_at(i, model.materials[material], observations, errors[material], weights[i], found[i]);
   });
   Outliers outliers;
   outliers.samples = observations.samples.size();
@@ -91,7 +111,7 @@ Outliers find_outliers(const Model& model, const Observations& observations, con
       const auto reason = static_cast<std::size_t>(outlier.reason);
       ++outliers.count[reason];
       ++outliers.by_view.at(outlier.view)[reason];
-      ++outliers.by_material[static_cast<std::size_t>(clustering.label[outlier.lumitexel])][reason];
+      ++outliers.by_material[static_cast<std::size_t>(label[outlier.lumitexel])][reason];
       outliers.worst.push_back(outlier);
     }
   }
@@ -109,7 +129,7 @@ std::string outliers_csv(const Outliers& outliers, const std::vector<std::string
     char numbers[160];
     std::snprintf(numbers, sizeof numbers, ",%u,%u,%s,%.4g,%.6g,%.6g\n", at % width, at / width, to_string(outlier.reason),
                   outlier.scales, outlier.measured, outlier.predicted);
-    text += view_names.at(outlier.view) + numbers;
+    text += quoted(view_names.at(outlier.view)) + numbers;
   }
   return text;
 }

@@ -9,23 +9,24 @@
 #include <string>
 #include <vector>
 
-#include "processing/brdf/cluster_materials.h"
+#include "processing/brdf/error_model.h"
 #include "processing/brdf/project_weights.h"
 #include "processing/model/model.h"
 
 namespace lumitexel {
 
 enum class OutlierReason {
-  Dark,          // under half of the diffuse light alone: a shadow that the mesh does not cast, or something in the way
-  NoHighlight,   // the predicted highlight is not there: the normal, the position or the material is wrong
-  Highlight,     // brighter than predicted, half vector within 30 degrees of the normal: a highlight that was not predicted
-  ExtraLight,    // brighter than predicted elsewhere: light from other surfaces, or another material
-  Colour         // as bright as predicted within a half, of another colour
+  Dark,         // under half of the diffuse light alone: a shadow that the mesh does not cast, or something in the way
+  NoHighlight,  // darker than predicted, which was mostly a highlight: the normal, the position or the material is wrong
+  Dim,          // darker than predicted otherwise
+  Highlight,    // brighter than predicted, half vector within 30 degrees of the normal: a highlight that was not predicted
+  ExtraLight,   // brighter than predicted elsewhere: light from other surfaces, or another material
+  Colour        // as bright as predicted within a half, and an outlier even if it were just as bright: of another colour
 };
-inline constexpr OutlierReason kOutlierReasons[] = {OutlierReason::Dark, OutlierReason::NoHighlight, OutlierReason::Highlight,
-                                                    OutlierReason::ExtraLight, OutlierReason::Colour};
+inline constexpr OutlierReason kOutlierReasons[] = {OutlierReason::Dark,      OutlierReason::NoHighlight, OutlierReason::Dim,
+                                                    OutlierReason::Highlight, OutlierReason::ExtraLight,  OutlierReason::Colour};
 using CountByReason = std::array<std::size_t, std::size(kOutlierReasons)>;
-const char* to_string(OutlierReason reason);  // "dark", "no highlight", "highlight", "extra light", "colour"
+const char* to_string(OutlierReason reason);  // "dark", "no highlight", "dim", "highlight", "extra light", "colour"
 
 struct Outlier {
   std::size_t lumitexel = 0;
@@ -46,11 +47,13 @@ struct Outliers {
   std::vector<Outlier> worst;              // at most kMostOutliersListed, the worst first
 };
 
-// observations.view must be filled. weights: of the model's basis, one entry a lumitexel.
-Outliers find_outliers(const Model& model, const Observations& observations, const Clustering& clustering,
-                       const std::vector<TexelWeights>& weights, std::size_t views);
+// observations.view must be filled. errors: one a material. label: material of each lumitexel. weights: of the model's basis, one entry
+// a lumitexel.
+Outliers find_outliers(const Model& model, const Observations& observations, const std::vector<ErrorModel>& errors,
+                       const std::vector<int>& label, const std::vector<TexelWeights>& weights, std::size_t views);
 
-// "view,texel_x,texel_y,reason,scales,measured,predicted" and a row for each of the worst. texel: atlas index of each lumitexel.
+// "view,texel_x,texel_y,reason,scales,measured,predicted" and a row for each of the worst; names in double quotes (RFC 4180). texel: atlas
+// index of each lumitexel.
 std::string outliers_csv(const Outliers& outliers, const std::vector<std::string>& view_names,
                          const std::vector<std::uint32_t>& texel, int atlas_width);
 

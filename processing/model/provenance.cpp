@@ -72,9 +72,10 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
                        {"final_lumitexels", options.final_lumitexels},
                        {"shared_lobe_shape", options.shared_lobe_shape},
                        {"plain_projection", options.plain_projection},
-                       {"errors", to_string(summary.errors)},
+                       {"errors", to_string(options.errors)},
                        {"relative_error", summary.error.relative},
                        {"error_floor", summary.error.floor}};
+  object["errors"] = to_string(summary.errors);  // whose they are, never "auto"
   object["materials"] = summary.texels_by_material.size();
   object["lumitexels"] = summary.lumitexels;
   object["samples"] = summary.samples;

@@ -28,10 +28,7 @@ std::vector<TradeoffSetting> all_settings(int materials) {
   add("lobes-2", "up to two lobes a material").options.most_lobes = 2;
   add("ggx", "GGX lobes").options.family = BrdfFamily::Ggx;
   FitOptions& paper = add("paper", "clustering, fits and projection as published").options;
-  paper.method = FitMethod::Paper;
-  paper.shared_lobe_shape = false;
-  paper.plain_projection = true;
-  paper.principal_functions = true;
+  paper = as_published(paper);
   for (const std::size_t views : {16u, 12u, 8u}) {
     const std::string number = std::to_string(views);
     add("views-" + number, "fitted to " + number + " photographs").fit_views = views;

@@ -194,7 +194,7 @@ std::string outlier_section(const Json& provenance) {
       "What the model does not explain",
       "Samples that lie more than " + html::number(number_or_nan(outliers, "beyond_scales")) +
           " scales of their material's error model from the prediction. None was dropped. Dark: under half of the diffuse light "
-          "alone, as in a shadow that the mesh does not cast. No highlight: predicted and not there. Highlight: there and not "
+          "alone, as in a shadow that the mesh does not cast. No highlight: darker, where mostly a highlight was predicted. Dim: darker otherwise. Highlight: there and not "
           "predicted. Extra light: brighter away from any highlight, as by light from other surfaces. Colour: as bright, of another "
           "colour. The worst are listed in the model's outliers.csv.",
       html::table(header, rows));

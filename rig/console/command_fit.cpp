@@ -59,8 +59,7 @@ FitOptions fit_options(const FitSettings& settings) {
     if (options.materials == 0) throw BadInput("--materials", "auto with --method paper", "a number: the paper does not choose it");
     if (options.family != BrdfFamily::Lafortune) throw BadInput("--family", settings.family + " with --method paper", "lafortune");
     if (options.errors != ErrorSource::Auto) throw BadInput("--errors", settings.errors + " with --method paper", "no such option");
-    options.shared_lobe_shape = false;
-    options.plain_projection = options.principal_functions = true;
+    return as_published(options);
   }
   return options;
 }

@@ -75,6 +75,22 @@ TEST(ClusterMaterials, TheSingleBrdfIsOneFitToEverything) {
   EXPECT_NEAR(single / material, 1.0, 1e-3);
 }
 
+// What all stages are measured against must not depend on how the materials were fitted.
+TEST(ClusterMaterials, TheSingleBrdfIsTheSameWhateverTheErrorsOfTheMaterials) {
+  const ThreeMaterials scene(6);
+  std::vector<Brdf> singles;
+  for (const ErrorSource errors : {ErrorSource::Given, ErrorSource::Labels, ErrorSource::Estimated}) {
+    ClusterOptions options = options_for(3);
+    options.errors = errors;
+    singles.push_back(
+        cluster_materials(scene.observations, select_lumitexels(scene.observations, 500), options, [](int) {}).single.brdf);
+  }
+  for (const Brdf& single : singles) {
+    EXPECT_EQ(single.diffuse, singles[0].diffuse);
+    ASSERT_EQ(single.lobes.size(), singles[0].lobes.size());
+  }
+}
+
 TEST(ClusterMaterials, ResultsDoNotDependOnTheNumberOfThreads) {
   const ThreeMaterials scene(5);
   const Clustering many = cluster(scene.observations, 3);

@@ -121,6 +121,16 @@ TEST_F(EvaluateModel, TheJsonHasEveryKeyThatIsPromised) {
   EXPECT_EQ(json.at("same_session"), true);
 }
 
+TEST_F(EvaluateModel, WithPrincipalFunctionsTheyAreTheLastStage) {
+  model_.materials[0].projection_basis = model_.materials[0].basis;
+  model_.projection_weights = model_.weights;
+  for (float& weight : model_.projection_weights.data) weight *= 2.0f;
+  const Json json = Json::parse(evaluation_json(evaluated()));
+  EXPECT_EQ(json.at("stage"), "pfa");
+  EXPECT_EQ(json.at("heldout_by_stage").at("pfa"), json.at("heldout"));
+  EXPECT_NE(json.at("heldout_by_stage").at("projection"), json.at("heldout"));
+}
+
 TEST_F(EvaluateModel, AnotherSessionIsAllowedAndSaidAndMissingFiguresAreNull) {
   session_.key = "another";
   session_.views.pop_back();

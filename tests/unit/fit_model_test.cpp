@@ -59,11 +59,8 @@ TEST(FitModel, WithPrincipalFunctionsBothStagesAreKept) {
       {view_of_origin("a", {0.5, 0, 0}, {0.6, 0.4, 0.3}), view_of_origin("b", {0.45, 0.2, 0.1}, {0.6, -0.4, 0.3}),
        view_of_origin("c", {0.45, -0.2, 0.1}, {0.7, 0.1, -0.3}), view_of_origin("d", {0.4, 0.1, 0.3}, {0.7, 0.1, 0.5})},
       folder);
-  FitOptions options = FitOptions::preset("draft");
-  options.method = FitMethod::Paper;
+  FitOptions options = as_published(FitOptions::preset("draft"));
   options.materials = 2;
-  options.plain_projection = options.principal_functions = true;
-  options.shared_lobe_shape = false;
   NoProgress progress;
   const FittedModel fitted = fit_model(session, options, {}, progress);
   ASSERT_TRUE(fitted.summary.pfa.has_value());

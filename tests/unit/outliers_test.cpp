@@ -15,7 +15,7 @@ const LobeGeometry kAside = geometry_of_cosines(0.9, 0.3, 0.3);  // half vector 
 struct World {
   Model model;
   Observations observations;
-  Clustering clustering;
+  std::vector<ErrorModel> errors{ErrorModel(0.1, 0.002)};
   std::vector<TexelWeights> weights;
 
   World() {
@@ -24,8 +24,6 @@ struct World {
     for (Lobe& lobe : brdf.lobes[0]) lobe = {std::log(5.0), 0.78539816, std::log(50.0)};
     model.materials.push_back({brdf, {brdf}, {}});
     observations.channels = 3;
-    clustering.materials.push_back({{brdf, ErrorModel(0.1, 0.01)}, {}, 1});
-    clustering.label = {0};
     weights.push_back({{1.0f}, 0.1f});
     observations.first = {0, 0};
   }
@@ -40,7 +38,7 @@ struct World {
     observations.first.back() = observations.samples.size();
   }
 
-  Outliers outliers() const { return find_outliers(model, observations, clustering, weights, observations.samples.size()); }
+  Outliers outliers() const { return find_outliers(model, observations, errors, {0}, weights, observations.samples.size()); }
 };
 
 TEST(Outliers, ASampleWithinItsErrorIsNone) {
@@ -56,12 +54,14 @@ TEST(Outliers, EachKindIsNamed) {
   world.see(kMirror, {3.0, 3.0, 3.0});
   world.see(kAside, {3.0, 3.0, 3.0});
   world.see(kAside, {2.0, 0.5, 0.5});
+  world.see(kAside, {0.6, 0.6, 0.6});   // darker by four scales, all channels alike: no other colour
+  world.see(kAside, {1.4, 1.4, 1.4});
   world.see(kAside, {1.0, 1.0, 1.0});
   const Outliers outliers = world.outliers();
   const OutlierReason expected[] = {OutlierReason::Dark, OutlierReason::NoHighlight, OutlierReason::Highlight, OutlierReason::ExtraLight,
-                                    OutlierReason::Colour};
-  ASSERT_EQ(outliers.worst.size(), 5u);
-  for (std::size_t v = 0; v < 5; ++v) {
+                                    OutlierReason::Colour, OutlierReason::Dim, OutlierReason::ExtraLight};
+  ASSERT_EQ(outliers.worst.size(), std::size(expected));
+  for (std::size_t v = 0; v < std::size(expected); ++v) {
     EXPECT_EQ(outliers.by_view[v][static_cast<std::size_t>(expected[v])], 1u) << to_string(expected[v]);
   }
   for (std::size_t i = 1; i < outliers.worst.size(); ++i) EXPECT_GE(outliers.worst[i - 1].scales, outliers.worst[i].scales);
@@ -70,8 +70,9 @@ TEST(Outliers, EachKindIsNamed) {
 TEST(Outliers, TheTableNamesPhotographAndTexel) {
   World world;
   world.see(kAside, {3.0, 3.0, 3.0});
-  EXPECT_EQ(outliers_csv(world.outliers(), {"view_007"}, {21}, 8).substr(0, 78),
-            "view,texel_x,texel_y,reason,scales,measured,predicted\nview_007,5,2,extra light");
+  const std::string table = outliers_csv(world.outliers(), {"a, \"b\""}, {21}, 8);
+  const std::string expected = "view,texel_x,texel_y,reason,scales,measured,predicted\n\"a, \"\"b\"\"\",5,2,extra light,";
+  EXPECT_EQ(table.substr(0, expected.size()), expected);
 }
 
 }  // namespace

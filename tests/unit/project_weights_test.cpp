@@ -83,6 +83,18 @@ TEST(ProjectTexel, SamplesThatErrTogetherTellLess) {
               2.0 * static_cast<double>(apart), 1e-5);
 }
 
+// Where the prior says it all, how samples err is no matter: with a pull as tight as this both know no more than the prior does.
+TEST(ProjectTexel, APriorDoesNotGrowVagueBecauseSamplesErrTogether) {
+  std::mt19937 random(13);
+  Observations observations;
+  add_mixture(observations, 0.4, 0.7, 2, 0.05, random);
+  ErrorModel together = kError;
+  together.independence = 0.1;
+  const TexelPrior tight{1e-3, 1e-3};
+  const double apart = static_cast<double>(project_texel(observations.of(0), 3, two_bases(), kError, tight).relative_sigma);
+  EXPECT_NEAR(static_cast<double>(project_texel(observations.of(0), 3, two_bases(), together, tight).relative_sigma), apart, 0.02 * apart);
+}
+
 TEST(ProjectTexel, AWideningPriorLetsTheDataSpeak) {
   std::mt19937 random(3);
   Observations observations;

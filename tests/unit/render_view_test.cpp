@@ -140,6 +140,19 @@ TEST(RenderView, EachStageShowsItsShareOfTheModel) {
   EXPECT_NEAR(renderer.render(view, {FitStage::Single, 1}).radiance.at(2, 2), 0.1, kRounding);
   EXPECT_NEAR(renderer.render(view, {FitStage::Cluster, 1}).radiance.at(2, 2), 0.2, kRounding);
   EXPECT_NEAR(renderer.render(view, {FitStage::Projection, 1}).radiance.at(2, 2), 0.15 + 0.175, kRounding);
+  EXPECT_NEAR(renderer.render(view, {FitStage::Pfa, 1}).radiance.at(2, 2), 0.15 + 0.175, kRounding);  // none: as projected
+}
+
+TEST(RenderView, PrincipalFunctionsAndTheProjectionBeforeThemAreTwoStages) {
+  Model model = model_of(square_mesh(), 1, 1, diffuse_brdf(0.1, 0.1, 0.1));
+  model.materials = {{diffuse_brdf(0.2, 0.2, 0.2), {diffuse_brdf(0.3, 0.3, 0.3)}, {diffuse_brdf(0.6, 0.6, 0.6)}}};
+  model.weights = Image(1, 1, 1, 0.5f);
+  model.projection_weights = Image(1, 1, 1, 0.75f);
+  const ViewRenderer renderer(model);
+  const View view = view_from_above(4, 5.0);
+  EXPECT_NEAR(renderer.render(view, {FitStage::Projection, 1}).radiance.at(2, 2), 0.45, kRounding);
+  EXPECT_NEAR(renderer.render(view, {FitStage::Pfa, 1}).radiance.at(2, 2), 0.15, kRounding);
+  EXPECT_NEAR(renderer.render(view, {}).radiance.at(2, 2), 0.15, kRounding) << "all that the model holds";
 }
 
 // The square is shifted so that it starts a given part into the first pixels, to the right and down.

@@ -11,16 +11,22 @@ namespace {
 // fits are that good; where they are worse, the highlights' misfit to the spheres says so, and every sigma grows with it.
 constexpr double kSystematicPx = 0.005;
 
+void note_others(SeenInView& seen) {
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    for (std::size_t j = 0; j < seen.size(); ++j) {
+      if (j != i) seen[i].others_px.push_back(seen[j].blob.pixel);
+    }
+  }
+}
+
 }  // namespace
 
 void fit_highlights(const MosaicRadiance& image, std::size_t view, const std::optional<ColourBalance>& balance,
                     const ShapeOf& shape, SeenInView& seen) {
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    HighlightShape own = shape(view, seen[i]);
-    for (std::size_t j = 0; j < seen.size(); ++j) {
-      if (j != i) own.others_px.push_back(seen[j].blob.pixel);
-    }
-    seen[i].fit = fit_highlight(image, seen[i].blob.pixel, kHighlightReach_px, balance, own);
+  for (SeenHighlight& highlight : seen) {
+    HighlightShape own = shape(view, highlight);
+    own.others_px = highlight.others_px;
+    highlight.fit = fit_highlight(image, highlight.blob.pixel, kHighlightReach_px, balance, own);
   }
 }
 
@@ -30,6 +36,7 @@ std::vector<SeenInView> find_highlights(std::size_t views, const RadianceReader&
   tbb::parallel_for(std::size_t{0}, views, [&](std::size_t v) {
     const MosaicRadiance image = reader.read(record(v));
     seen[v] = find(v, image);
+    note_others(seen[v]);
     fit_highlights(image, v, std::nullopt, shape, seen[v]);
     step();
   });

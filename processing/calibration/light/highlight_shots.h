@@ -16,6 +16,7 @@ struct SeenHighlight {
   int sphere = 0;  // place along the line
   Blob blob;
   std::optional<FittedHighlight> fit;
+  std::vector<Eigen::Vector2d> others_px{};  // the view's other highlights, whoever's light they are: what lies nearer to one is left to it
 };
 using SeenInView = std::vector<SeenHighlight>;
 
@@ -24,12 +25,11 @@ using FindIn = std::function<SeenInView(std::size_t view, const MosaicRadiance&)
 // Called from several threads.
 using ShapeOf = std::function<HighlightShape(std::size_t view, const SeenHighlight&)>;
 
-// Fits every highlight of one view; without a balance, with free colours. What lies nearer to another of the view's highlights
-// is left to that one.
+// Fits every highlight of one view; without a balance, with free colours.
 void fit_highlights(const MosaicRadiance& image, std::size_t view, const std::optional<ColourBalance>& balance,
                     const ShapeOf& shape, SeenInView& seen);
 
-// Finds highlights in every view's shot and fits them with free colours. step: called once a shot.
+// Finds highlights in every view's shot, notes each one's others, and fits them with free colours. step: called once a shot.
 std::vector<SeenInView> find_highlights(std::size_t views, const RadianceReader& reader, const RecordOf& record,
                                         const FindIn& find, const ShapeOf& shape, const std::function<void()>& step);
 

@@ -6,8 +6,7 @@
 namespace lumitexel {
 
 // Adds kinks to a converged fit one at a time, each where a bend of the spline would gain most by being free, as long
-// as -2 log likelihood falls by more than the Bayesian information criterion asks for a kink's two parameters. Returns
-// the iterations it took.
+// as the evidence (ResponseLeastSquares::surprise) is for it. Returns the iterations it took.
 int add_kinks(ResponseLeastSquares& fit);
 
 }  // namespace lumitexel

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -64,6 +65,46 @@ TEST(NumberOfMaterials, OneMaterialIsOneWhereItsBrightnessVaries) {
     }
     EXPECT_EQ(materials_found(observations, ErrorSource::Estimated), 1u) << "seed " << seed;
   }
+}
+
+// Over 1,000 lumitexels a part of them ranks the pairs first: a material in two shades, far apart in likelihood, ranks behind pairs that are
+// needed apart, and has to be asked all the same.
+TEST(NumberOfMaterials, APairThatRanksLastIsAskedBeforeMergingEnds) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  const Brdf shaded = one_lobe({0.2, 0.1, 0.05}, {0.6, 0.6, 0.6}, kMirror, 20.0);
+  Observations observations;
+  Mixture mixture;
+  add_lumitexels(observations, shaded, 1100, 6, 0.03, random);
+  for (std::size_t i = 0; i < observations.lumitexels(); ++i) {
+    const double factor = 1.0 + 0.06 * normal(random);
+    for (std::size_t s = observations.first[i]; s < observations.first[i + 1]; ++s) {
+      for (float& r : observations.samples[s].reflectance) r *= static_cast<float>(factor);
+    }
+  }
+  for (const double factor : {0.95, 1.05}) {
+    Brdf shade = shaded;
+    for (double& kd : shade.diffuse) kd *= factor;
+    for (Lobe& lobe : shade.lobes[0]) lobe.log_strength += std::log(factor);
+    mixture.materials.push_back({shade, ErrorModel(0.04, 1e-3)});
+  }
+  // Four more of few lumitexels each, whose merging would cost less in all and more a sample.
+  for (const double kd : {0.020, 0.022, 0.0242, 0.0266}) {
+    const Brdf rare = one_lobe({kd, kd, kd}, {0.1, 0.1, 0.1}, kMirror, 20.0);
+    add_lumitexels(observations, rare, 40, 6, 0.03, random);
+    mixture.materials.push_back({rare, ErrorModel(0.03, 1e-3)});
+  }
+  mixture.share = {0.44, 0.44, 0.03, 0.03, 0.03, 0.03};
+  LumitexelList all(observations.lumitexels());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  MergeOptions options;
+  options.fit.choose_lobes = false;
+  maximise_expectation(mixture, observations, all, options.fit, {});
+  ASSERT_EQ(mixture.materials.size(), 6u);
+  merge_materials(mixture, observations, all, options, [](int) {});
+  const auto shades = std::count_if(mixture.materials.begin(), mixture.materials.end(),
+                                    [](const MaterialModel& material) { return material.brdf.diffuse[0] > 0.1; });
+  EXPECT_EQ(shades, 1);
 }
 
 // Two materials given as four, each twice and a little apart: splitting went too far, and merging alone has to see it.
