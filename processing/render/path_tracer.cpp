@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "processing/render/lamp_light.h"
+
 namespace lumitexel {
 namespace {
 
@@ -69,15 +71,8 @@ bool PathTracer::arrive(const TexturedPoint& point, const Eigen::Vector3d& wo, d
 }
 
 void PathTracer::add_lamps(const TexturedPoint& point) {
-  for (const Light& lamp : lighting_.lamps) {
-    const Eigen::Vector3d wi = lamp.direction_from(point.position_in_world);
-    if (!(point.geometric_normal.dot(wi) > 0.0)) continue;
-    const ChannelValues r = texel_.reflectance(wi);
-    if (r == ChannelValues{} || !surface_.sees(point, lamp)) continue;
-    for (std::size_t c = 0; c < lamp.intensity.size(); ++c) {
-      sample_.radiance[c] += throughput_[c] * r[c] * lamp.irradiance(point.position_in_world, static_cast<int>(c));
-    }
-  }
+  const ChannelValues light = light_of_lamps(surface_, point, texel_, lighting_.lamps);
+  for (std::size_t c = 0; c < light.size(); ++c) sample_.radiance[c] += throughput_[c] * light[c];
 }
 
 PathTracer::Sky PathTracer::sky_direction(const Eigen::Vector2d& uniform) const {

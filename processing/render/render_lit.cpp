@@ -8,6 +8,7 @@
 #include <string>
 
 #include "drivers/error.h"
+#include "processing/render/lamp_light.h"
 #include "processing/render/progressive.h"
 
 namespace lumitexel {
@@ -17,16 +18,11 @@ constexpr int kSamplesToBelieve = 16;
 constexpr int kProgressSteps = 1000;
 
 void check(const Model& model, const View& view, const Lighting& lighting, const LitOptions& options) {
-  const auto channels = static_cast<std::size_t>(model.channels);
-  for (const Light& lamp : lighting.lamps) {
-    if (lamp.intensity.size() == channels) continue;
-    throw BadInput(view.name + ": light", std::to_string(lamp.intensity.size()) + " channels",
-                   std::to_string(channels) + " as the model has");
-  }
+  check_lamps(view, lighting.lamps, model.channels);
   if (lighting.environment != nullptr && lighting.environment->channels() != 1 &&
       lighting.environment->channels() != model.channels) {
     throw BadInput("environment", std::to_string(lighting.environment->channels()) + " channels",
-                   "1 or " + std::to_string(channels) + " as the model has");
+                   "1 or " + std::to_string(model.channels) + " as the model has");
   }
   if (lighting.environment == nullptr && lighting.lamps.empty()) throw BadInput(view.name, "no light", "a lamp or an environment");
   const RenderLimits& limits = options.limits;

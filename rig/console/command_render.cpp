@@ -7,7 +7,10 @@
 #include "processing/image/tone_map.h"
 #include "processing/model/image_error.h"
 #include "processing/model/model_file.h"
+#include "processing/render/carry_model.h"
 #include "processing/render/render_lit.h"
+#include "processing/render/splat.h"
+#include "processing/surface/mesh_file.h"
 #include "rig/console/command.h"
 #include "rig/console/render_settings.h"
 
@@ -43,22 +46,27 @@ double preview_white(const Image& image) {
 struct Rendering {
   Image image;
   std::optional<LitView> lit;  // of the sampled renderer: how it went
+  std::optional<SplatView> points;
 };
 
 Rendering rendered(const RenderSettings& settings, const Model& model, Aov aov, Progress& progress) {
   View view = settings.session.empty() ? parse_camera(settings.given) : view_of_session(settings, progress);
-  if (aov != Aov::Radiance) return {ViewRenderer(model).render_aov(view, aov), {}};
+  if (aov != Aov::Radiance) return {ViewRenderer(model).render_aov(view, aov), {}, {}};
   Lighting lighting{parse_lamps(settings.given, model.channels), nullptr};
   if (!settings.session.empty() && !settings.camera_only) lighting.lamps.insert(lighting.lamps.begin(), view.light);
-  LitOptions options = lit_options(settings);
+  const LitOptions options = lit_options(settings);
+  if (settings.splat) {
+    SplatView points = splat(model, view, lighting.lamps, options.stage);
+    return {points.radiance, {}, std::move(points)};
+  }
   if (!settings.by_chance(lighting.lamps.size())) {
     view.light = lighting.lamps.front();
-    return {ViewRenderer(model).render(view, {options.stage, settings.samples_per_pixel.value_or(1)}).radiance, {}};
+    return {ViewRenderer(model).render(view, {options.stage, settings.samples_per_pixel.value_or(1)}).radiance, {}, {}};
   }
   std::optional<Environment> sky;
   if (!settings.environment.empty()) lighting.environment = &sky.emplace(environment_of(settings, model.channels));
   LitView lit = render_lit(model, view, lighting, options, progress, SystemClock());
-  return {lit.radiance, std::move(lit)};
+  return {lit.radiance, std::move(lit), {}};
 }
 
 void add_outcome(const LitView& lit, CommandResult& result) {
@@ -75,10 +83,17 @@ void add_outcome(const LitView& lit, CommandResult& result) {
   }
 }
 
+void add_outcome(const SplatView& points, CommandResult& result) {
+  result.json["points"] = points.points;
+  result.json["points_shown"] = points.shown;
+  result.text += std::to_string(points.shown) + " of " + std::to_string(points.points) + " points are seen\n";
+}
+
 CommandResult render_command(const RenderSettings& settings, CommandContext& context) {
   const Aov aov = aov_from_string(settings.aov);
   check_render_settings(settings, aov);
-  const Model model = read_model(settings.model);
+  Model model = read_model(settings.model);
+  if (!settings.mesh.empty()) model = carried_to(std::move(model), read_mesh(settings.mesh), settings.mesh);
   const Rendering rendering = rendered(settings, model, aov, context.progress);
   const Image& image = rendering.image;
   write_exr_colour(settings.out, image, aov == Aov::Cluster ? ExrPixel::Uint : ExrPixel::Float);
@@ -88,6 +103,7 @@ CommandResult render_command(const RenderSettings& settings, CommandContext& con
   result.text = settings.out + ": " + std::to_string(image.width) + "x" + std::to_string(image.height) + " pixels, " +
                 settings.aov + "\n";
   if (rendering.lit) add_outcome(*rendering.lit, result);
+  if (rendering.points) add_outcome(*rendering.points, result);
   if (!settings.png.empty()) {
     const double white = preview_white(image);
     write_png8(settings.png, tone_mapped(image, white));

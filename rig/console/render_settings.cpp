@@ -87,12 +87,24 @@ void require_options_that_act(const RenderSettings& settings, Aov aov) {
                                                {!settings.png.empty(), "--png"},
                                                {!settings.given.directional.empty(), "--directional"},
                                                {!settings.environment.empty(), "--environment"},
+                                               {settings.splat, "--splat"},
                                                {settings.camera_only, "--camera-only"},
                                                {settings.bounces != 0, "--bounces"},
                                                {settings.time_limit_s.has_value(), "--time-limit"},
                                                {settings.noise.has_value(), "--noise"}};
   for (const auto& [given, option] : idle) {
     if (given) throw BadInput("--aov", "'" + settings.aov + "' with " + option, std::string(option) + " with radiance only");
+  }
+}
+
+void require_what_splats_can_show(const RenderSettings& settings) {
+  const std::pair<bool, const char*> beyond[] = {{!settings.environment.empty(), "--environment"},
+                                                 {settings.bounces != 0, "--bounces"},
+                                                 {settings.samples_per_pixel.has_value(), "--spp"},
+                                                 {settings.time_limit_s.has_value(), "--time-limit"},
+                                                 {settings.noise.has_value(), "--noise"}};
+  for (const auto& [given, option] : beyond) {
+    if (settings.splat && given) throw BadInput("--splat", std::string("with ") + option, "rays instead, or lamps alone");
   }
 }
 
@@ -109,6 +121,11 @@ void add_render_options(CLI::App& command, RenderSettings& settings) {
   command.add_option("--aov", settings.aov, "radiance, normal, position, cluster, samples or sigma")
       ->capture_default_str();
   add_quality_options(command, settings);
+  command.add_flag("--splat", settings.splat,
+                   "Draw the model's texels forward as points instead of casting rays: lamps with shadows only");
+  command.add_option("--mesh", settings.mesh,
+                     "PLY or OBJ: put the maps on this mesh, the model's own (or the scan it was fitted on) bent or moved, with "
+                     "the same triangles in the same order; texels' normals turn with their triangles");
   command.add_option("--png", settings.png, "Also write a tone-mapped preview");
 }
 
@@ -116,6 +133,7 @@ void check_render_settings(const RenderSettings& settings, Aov aov) {
   require_one_way(settings, aov);
   require_what_they_describe(settings);
   require_options_that_act(settings, aov);
+  require_what_splats_can_show(settings);
   if (settings.bounces < 0) throw BadInput("--bounces", std::to_string(settings.bounces), "0 or more");
 }
 

@@ -14,7 +14,8 @@ namespace lumitexel {
 struct RenderSettings {
   std::string model, out, png, session, view, stage, aov = "radiance";
   ViewOptions given;
-  bool camera_only = false;
+  bool camera_only = false, splat = false;
+  std::string mesh;
   std::string environment, environment_up;
   std::optional<double> environment_scale, environment_turn_deg;
   bool show_environment = false;
