@@ -24,13 +24,13 @@ std::optional<Eigen::Matrix3d> triangle_frame(const Mesh& mesh, std::size_t tria
   return frame;
 }
 
-// F^-T of each triangle.
-std::vector<Eigen::Matrix3d> normal_changes(const Mesh& before, const Mesh& after, const std::string& where) {
-  std::vector<Eigen::Matrix3d> changes(before.triangles.size(), Eigen::Matrix3d::Identity());
+// F^-T of each triangle; nothing for those that stay where they are, whose normals keep their bits.
+std::vector<std::optional<Eigen::Matrix3d>> normal_changes(const Mesh& before, const Mesh& after, const std::string& where) {
+  std::vector<std::optional<Eigen::Matrix3d>> changes(before.triangles.size());
   for (std::size_t t = 0; t < changes.size(); ++t) {
     const auto old_frame = triangle_frame(before, t), new_frame = triangle_frame(after, t);
     if (!new_frame) throw BadInput(where, "triangle " + std::to_string(t) + " has no area", "triangles with an area");
-    if (old_frame) changes[t] = (*old_frame * new_frame->inverse()).transpose();
+    if (old_frame && *old_frame != *new_frame) changes[t] = (*old_frame * new_frame->inverse()).transpose();
   }
   return changes;
 }
@@ -42,8 +42,8 @@ Mesh moved_mesh(const Mesh& mesh, const Mesh& changed, const std::string& where)
                    std::to_string(mesh.triangles.size()) + ", in the order of the model's mesh");
   }
   Mesh moved = mesh;
-  moved.normals.assign(mesh.normals.size(), Eigen::Vector3d::Zero());
-  std::vector<bool> placed(mesh.positions.size(), false);
+  std::vector<bool> placed(mesh.positions.size(), false), mixed(mesh.positions.size(), false);
+  std::vector<Eigen::Vector3d> sums(mesh.positions.size(), Eigen::Vector3d::Zero());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t vertex = mesh.triangles[t][k], source = changed.triangles[t][k];
@@ -51,13 +51,15 @@ Mesh moved_mesh(const Mesh& mesh, const Mesh& changed, const std::string& where)
         throw BadInput(where, "triangle " + std::to_string(t) + ", corner " + std::to_string(k) + " is torn from its neighbours",
                        "the topology of the model's mesh: the same triangles and corners in the same order");
       }
-      placed[vertex] = true;
+      mixed[vertex] = mixed[vertex] || (placed[vertex] && moved.normals[vertex] != changed.normals[source]);
+      if (!placed[vertex]) moved.normals[vertex] = changed.normals[source];
+      sums[vertex] += changed.normals[source];
       moved.positions[vertex] = changed.positions[source];
-      moved.normals[vertex] += changed.normals[source];
+      placed[vertex] = true;
     }
   }
-  for (std::size_t v = 0; v < moved.normals.size(); ++v) {
-    moved.normals[v] = moved.normals[v].norm() > 0.0 ? moved.normals[v].normalized() : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
+  for (std::size_t v = 0; v < sums.size(); ++v) {  // a vertex that was split along an edge has several
+    if (mixed[v] && sums[v].norm() > 0.0) moved.normals[v] = sums[v].normalized();
   }
   return moved;
 }
@@ -89,14 +91,16 @@ void spread_triangles(const Model& model, std::vector<std::int32_t>& triangle) {
 
 Model carried_to(Model model, const Mesh& changed, const std::string& where) {
   Mesh moved = moved_mesh(model.mesh, changed, where);
-  const std::vector<Eigen::Matrix3d> changes = normal_changes(model.mesh, moved, where);
+  const std::vector<std::optional<Eigen::Matrix3d>> changes = normal_changes(model.mesh, moved, where);
   std::vector<std::int32_t> triangle = triangle_of_texel(model);
   spread_triangles(model, triangle);
   for (std::size_t t = 0; t < triangle.size(); ++t) {
     float* stored = &model.normal.data[3 * t];
     const Eigen::Vector3d normal(stored[0], stored[1], stored[2]);
     if (triangle[t] == kNoTriangle || normal.isZero()) continue;
-    const Eigen::Vector3d turned = (changes[static_cast<std::size_t>(triangle[t])] * normal).normalized();
+    const std::optional<Eigen::Matrix3d>& change = changes[static_cast<std::size_t>(triangle[t])];
+    if (!change) continue;
+    const Eigen::Vector3d turned = (*change * normal).normalized();
     for (int axis = 0; axis < 3; ++axis) stored[axis] = static_cast<float>(turned[axis]);
   }
   model.mesh = std::move(moved);

@@ -107,6 +107,13 @@ TEST(CarryModel, TheChangedMeshMayBeSplitOtherwise) {
   for (std::size_t i = 0; i < model.normal.data.size(); ++i) ASSERT_NEAR(carried.normal.data[i], model.normal.data[i], 1e-5);
 }
 
+TEST(CarryModel, WhatStaysWhereItIsKeepsItsBits) {
+  const Model model = bumpy_sphere();
+  const Model carried = carried_to(model, model.mesh, "the same");
+  EXPECT_EQ(carried.normal.data, model.normal.data);
+  EXPECT_EQ(carried.mesh.normals, model.mesh.normals);
+}
+
 TEST(CarryModel, RefusesAnotherTopologyByName) {
   const Model model = bumpy_sphere();
   Mesh fewer = model.mesh;
