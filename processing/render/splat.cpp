@@ -21,9 +21,9 @@ namespace {
 // One sigma of the kernel in texels, and in pixels. Any point between texels is within 0.71 steps of one of them.
 constexpr double kTexelSigma = 0.45, kPixelSigma = 0.35;
 constexpr double kReach2 = 9.0;    // squared Mahalanobis distance up to which a kernel counts: 1.35 steps
-// A point hides what is behind it in the pixel whose centre is nearest, and 0.8 steps around, so that four neighbours close the gap
+// A point hides what is behind it in the pixel whose centre is nearest, and 0.9 steps around, so that four neighbours close the gap
 // between them. No farther: at an outline the pixel's own blur would make the object grow.
-constexpr double kSolid2 = 3.2, kNearestPixel = 0.5;
+constexpr double kSolid2 = 4.0, kNearestPixel = 0.5;
 constexpr double kThinnest = 0.05;  // pixels: of a texel seen from its edge, so that its ellipse can be inverted
 constexpr double kBehind = 1.0;    // steps behind the nearest that still count as the same surface
 // Drawn so many times finer than asked for and averaged, so that outlines cover parts of pixels; odd, so that a centre stays one.
