@@ -109,7 +109,8 @@ TEST(Splat, AFlatPlateIsEvenAndWithoutHolesAtAnyScale) {
   }
 }
 
-// Seen aslant, so that a pixel's depths spread: nothing of the bright plate two spacings behind shines through.
+// Nothing of a bright plate two spacings behind shines through, also seen aslant, where a pixel's depths spread. A lamp between the
+// two lights it.
 TEST(Splat, WhatIsHiddenDoesNotShineThrough) {
   Mesh mesh = square_mesh();
   constexpr int kTexels = 64;
@@ -127,6 +128,8 @@ TEST(Splat, WhatIsHiddenDoesNotShineThrough) {
   for (const double slope : {0.0, 0.9}) {
     View view = view_from_above(80, 6.0);
     view.camera_from_world = view.camera_from_world * Eigen::Isometry3d(Eigen::AngleAxisd(slope, Eigen::Vector3d::UnitX()));
+    view.light.type = Light::Type::Point;
+    view.light.vector_in_world = {0.0, 0.0, -0.5 * behind};
     const RenderedView rays = ViewRenderer(model).render(view, {});
     const SplatView points = splat(model, view, {view.light}, FitStage::Pfa);
     const Image position = ViewRenderer(model).render_aov(view, Aov::Position);
