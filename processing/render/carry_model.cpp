@@ -25,7 +25,8 @@ std::optional<Eigen::Matrix3d> triangle_frame(const Mesh& mesh, std::size_t tria
 }
 
 // F^-T of each triangle; nothing for those that stay where they are, whose normals keep their bits.
-std::vector<std::optional<Eigen::Matrix3d>> normal_changes(const Mesh& before, const Mesh& after, const std::string& where) {
+std::vector<std::optional<Eigen::Matrix3d>> normal_changes(const Mesh& before, const Mesh& after,
+                                                           const std::string& where) {
   std::vector<std::optional<Eigen::Matrix3d>> changes(before.triangles.size());
   for (std::size_t t = 0; t < changes.size(); ++t) {
     const auto old_frame = triangle_frame(before, t), new_frame = triangle_frame(after, t);
@@ -48,8 +49,9 @@ Mesh moved_mesh(const Mesh& mesh, const Mesh& changed, const std::string& where)
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t vertex = mesh.triangles[t][k], source = changed.triangles[t][k];
       if (placed[vertex] && moved.positions[vertex] != changed.positions[source]) {
-        throw BadInput(where, "triangle " + std::to_string(t) + ", corner " + std::to_string(k) + " is torn from its neighbours",
-                       "the topology of the model's mesh: the same triangles and corners in the same order");
+        throw BadInput(
+            where, "triangle " + std::to_string(t) + ", corner " + std::to_string(k) + " is torn from its neighbours",
+            "the topology of the model's mesh: the same triangles and corners in the same order");
       }
       mixed[vertex] = mixed[vertex] || (placed[vertex] && moved.normals[vertex] != changed.normals[source]);
       if (!placed[vertex]) moved.normals[vertex] = changed.normals[source];

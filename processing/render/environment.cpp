@@ -37,8 +37,8 @@ struct Piece {
 
 Piece piece_at(const double* ends, std::size_t count, double share) {
   const double aim = share * ends[count - 1];
-  const auto index = static_cast<std::size_t>(
-      std::min<std::ptrdiff_t>(std::upper_bound(ends, ends + count, aim) - ends, static_cast<std::ptrdiff_t>(count) - 1));
+  const auto index = static_cast<std::size_t>(std::min<std::ptrdiff_t>(std::upper_bound(ends, ends + count, aim) - ends,
+                                                                       static_cast<std::ptrdiff_t>(count) - 1));
   const double start = index > 0 ? ends[index - 1] : 0.0, size = ends[index] - start;
   return {index, size > 0.0 ? std::clamp((aim - start) / size, 0.0, 1.0) : 0.5};
 }
@@ -117,8 +117,8 @@ Eigen::Matrix3d environment_from_world(const Eigen::Vector3d& up_in_world, doubl
   return world_from_environment.transpose();
 }
 
-Environment read_environment(const std::filesystem::path& path, double scale, const Eigen::Matrix3d& environment_from_world,
-                             int channels) {
+Environment read_environment(const std::filesystem::path& path, double scale,
+                             const Eigen::Matrix3d& environment_from_world, int channels) {
   if (!(scale > 0.0) || !std::isfinite(scale)) {
     throw BadInput("environment: scale", std::to_string(scale), "a finite number above 0");
   }

@@ -76,21 +76,28 @@ LobeSampler::LobeSampler(BrdfFamily family, double log_shape, double aim) : shap
       kind_ = Kind::Lafortune;
       toward_ = Eigen::Vector3d(-std::sin(aim), -std::sin(aim), std::cos(aim));
       break;
-    case BrdfFamily::Ggx: kind_ = Kind::Ggx; break;
-    case BrdfFamily::Ward: kind_ = Kind::Ward; break;
+    case BrdfFamily::Ggx:
+      kind_ = Kind::Ggx;
+      break;
+    case BrdfFamily::Ward:
+      kind_ = Kind::Ward;
+      break;
   }
 }
 
 Eigen::Vector3d LobeSampler::sample(const Eigen::Vector3d& wo, const Eigen::Vector2d& uniform) const {
   switch (kind_) {
-    case Kind::Diffuse: return cosine_direction(uniform);
+    case Kind::Diffuse:
+      return cosine_direction(uniform);
     case Kind::Lafortune: {
       const Eigen::Vector3d axis = toward_.cwiseProduct(wo);
       if (axis.norm() < kLeastAxis) return -Eigen::Vector3d::UnitZ();
       return power_direction(axis.normalized(), shape_, uniform);
     }
-    case Kind::Ggx: return mirrored(wo, visible_normal(wo, shape_, uniform));
-    case Kind::Ward: return mirrored(wo, gaussian_normal(shape_, uniform));
+    case Kind::Ggx:
+      return mirrored(wo, visible_normal(wo, shape_, uniform));
+    case Kind::Ward:
+      return mirrored(wo, gaussian_normal(shape_, uniform));
   }
   return -Eigen::Vector3d::UnitZ();
 }

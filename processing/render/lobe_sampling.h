@@ -1,5 +1,5 @@
-// Directions drawn in proportion, about, to what one part of a BRDF reflects times the cosine: diffuse light, or one lobe of one
-// shape. All vectors unit, in the surface's frame: z is the normal.
+// Directions drawn in proportion, about, to what one part of a BRDF reflects times the cosine: diffuse light, or one
+// lobe of one shape. All vectors unit, in the surface's frame: z is the normal.
 //
 //   diffuse    cosine
 //   Lafortune  cos^N about the axis C wo, which is the lobe itself: C = diag(-sin phi, -sin phi, cos phi)
@@ -25,8 +25,8 @@ class LobeSampler {
  private:
   enum class Kind { Diffuse, Lafortune, Ggx, Ward };
   Kind kind_ = Kind::Diffuse;
-  double shape_ = 1;                                     // N or alpha
-  Eigen::Vector3d toward_ = Eigen::Vector3d::UnitZ();    // diagonal of C
+  double shape_ = 1;                                   // N or alpha
+  Eigen::Vector3d toward_ = Eigen::Vector3d::UnitZ();  // diagonal of C
 };
 
 }  // namespace lumitexel

@@ -100,8 +100,8 @@ void PathTracer::add_sky(const Sky& sky, double weight) {
   }
 }
 
-// The next surface in the direction drawn from the BRDF, or nothing; then what the sky sends from there has been added. On the
-// last leg only the sky matters.
+// The next surface in the direction drawn from the BRDF, or nothing; then what the sky sends from there has been added.
+// On the last leg only the sky matters.
 std::optional<TexturedPoint> PathTracer::follow(const TexturedPoint& point, const Sky& drawn, bool last) {
   if (!(drawn.density > 0.0) || !(point.geometric_normal.dot(drawn.direction) > 0.0)) return std::nullopt;
   std::optional<TexturedPoint> next;

@@ -1,16 +1,17 @@
-// The radiance that arrives along one ray: light from lamps and an environment, reflected by the model towards the ray, directly
-// and after up to a number of bounces between the model's own surfaces. One random sample of it, without bias.
+// The radiance that arrives along one ray: light from lamps and an environment, reflected by the model towards the ray,
+// directly and after up to a number of bounces between the model's own surfaces. One random sample of it, without bias.
 //
-// At every point of a path one of the four texels around it is drawn by its bilinear weight; its BRDF and normal hold for the
-// point. The mean over many paths is the blend that ViewRenderer computes. Lamps are asked one by one (next event estimation),
-// each with a shadow ray. The environment is asked twice, by a direction drawn from it and by one drawn from the texel's BRDF, the
-// two combined by the power heuristic (Veach, Guibas 1995); the BRDF's direction also finds the next surface.
+// At every point of a path one of the four texels around it is drawn by its bilinear weight; its BRDF and normal hold
+// for the point. The mean over many paths is the blend that ViewRenderer computes. Lamps are asked one by one (next
+// event estimation), each with a shadow ray. The environment is asked twice, by a direction drawn from it and by one
+// drawn from the texel's BRDF, the two combined by the power heuristic (Veach, Guibas 1995); the BRDF's direction also
+// finds the next surface.
 //
-// Where the shading normal and the triangle disagree: light reaches a point only from above both, and leaves it only above both.
-// What would pass below the triangle is blocked by it, what would pass below the shading normal's horizon is absorbed. Energy is
-// lost there and none is ever made. Light that comes from other surfaces is scaled down where a fitted BRDF would reflect more than
-// it gets (its albedo above 1 in a channel), so that no chain of bounces gains; light straight from lamps and environment is
-// left as the BRDF says, as photographs measured it.
+// Where the shading normal and the triangle disagree: light reaches a point only from above both, and leaves it only
+// above both. What would pass below the triangle is blocked by it, what would pass below the shading normal's horizon
+// is absorbed. Energy is lost there and none is ever made. Light that comes from other surfaces is scaled down where a
+// fitted BRDF would reflect more than it gets (its albedo above 1 in a channel), so that no chain of bounces gains;
+// light straight from lamps and environment is left as the BRDF says, as photographs measured it.
 //
 // Backs of triangles and holes of the atlas are black, and cast shadows.
 #pragma once

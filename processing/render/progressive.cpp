@@ -16,7 +16,8 @@ ProgressivePicture::ProgressivePicture(int width_px, int height_px, int channels
 void ProgressivePicture::add(int x, int y, int sample_index, const ChannelValues& radiance, bool hit) {
   const std::size_t pixel =
       static_cast<std::size_t>(y) * static_cast<std::size_t>(width_px_) + static_cast<std::size_t>(x);
-  double* sums = &sums_[static_cast<std::size_t>(sample_index % kReplicates)][pixel * static_cast<std::size_t>(channels_)];
+  double* sums =
+      &sums_[static_cast<std::size_t>(sample_index % kReplicates)][pixel * static_cast<std::size_t>(channels_)];
   for (int c = 0; c < channels_; ++c) sums[c] += radiance[static_cast<std::size_t>(c)];
   if (hit) hit_[pixel] = 1;
 }

@@ -24,7 +24,8 @@ void check(const Model& model, const View& view, const Lighting& lighting, const
     throw BadInput("environment", std::to_string(lighting.environment->channels()) + " channels",
                    "1 or " + std::to_string(model.channels) + " as the model has");
   }
-  if (lighting.environment == nullptr && lighting.lamps.empty()) throw BadInput(view.name, "no light", "a lamp or an environment");
+  if (lighting.environment == nullptr && lighting.lamps.empty())
+    throw BadInput(view.name, "no light", "a lamp or an environment");
   const RenderLimits& limits = options.limits;
   if (limits.samples_per_pixel < 1) {
     throw BadInput("samples per pixel", std::to_string(limits.samples_per_pixel), "1 or more");
@@ -87,7 +88,8 @@ class Passes {
     const Eigen::Vector3d direction =
         world_from_camera_.linear() * view_.camera.unproject({x + inside.x(), y + inside.y()});
     PathSample sample = tracer.trace(world_from_camera_.translation(), direction, numbers);
-    if (!std::all_of(sample.radiance.begin(), sample.radiance.end(), [](double value) { return std::isfinite(value); })) {
+    if (!std::all_of(sample.radiance.begin(), sample.radiance.end(),
+                     [](double value) { return std::isfinite(value); })) {
       ++dropped_;
       sample.radiance = {};
     }
@@ -108,9 +110,12 @@ class Passes {
 
 const char* to_string(RenderEnd end) {
   switch (end) {
-    case RenderEnd::Samples: return "samples";
-    case RenderEnd::Time: return "time";
-    case RenderEnd::Noise: return "noise";
+    case RenderEnd::Samples:
+      return "samples";
+    case RenderEnd::Time:
+      return "time";
+    case RenderEnd::Noise:
+      return "noise";
   }
   return "unknown";
 }

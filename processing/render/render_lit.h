@@ -1,8 +1,8 @@
-// A model in the light of lamps and an environment, with light between its surfaces: rendered pass by pass until it is good
-// enough (path_tracer.h says what is computed, progressive.h how the noise is told).
+// A model in the light of lamps and an environment, with light between its surfaces: rendered pass by pass until it is
+// good enough (path_tracer.h says what is computed, progressive.h how the noise is told).
 //
-// The picture is a function of the model, the view's camera, the lighting, the options and the number of samples per pixel: any
-// number of threads computes the same bits. The pixel is a square, evenly weighted.
+// The picture is a function of the model, the view's camera, the lighting, the options and the number of samples per
+// pixel: any number of threads computes the same bits. The pixel is a square, evenly weighted.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ namespace lumitexel {
 // Whichever comes first ends the work.
 struct RenderLimits {
   int samples_per_pixel = 64;
-  // From the call on. No pass over the picture is begun that, by the time of those before, would not be done in time; the first
-  // one always is.
+  // From the call on. No pass over the picture is begun that, by the time of those before, would not be done in time;
+  // the first one always is.
   double time_s = std::numeric_limits<double>::infinity();
   double noise = 0;  // 0: not asked for. As in ProgressivePicture::noise; believed from 16 samples on
 };
@@ -37,14 +37,14 @@ struct LitView {
   Image radiance;                 // the model's channels
   std::vector<std::uint8_t> hit;  // per pixel 1 where any ray meets the mesh
   int samples_per_pixel = 0;
-  std::optional<double> noise;      // of the result
+  std::optional<double> noise;       // of the result
   std::int64_t dropped_samples = 0;  // that were not finite; they count as black
   double seconds = 0;
   RenderEnd end = RenderEnd::Samples;
 };
 
-// The view's own light plays no part unless it is among the lamps. Throws BadInput for a lamp or an environment whose channels
-// are not the model's, and for limits or bounces that make no sense.
+// The view's own light plays no part unless it is among the lamps. Throws BadInput for a lamp or an environment whose
+// channels are not the model's, and for limits or bounces that make no sense.
 LitView render_lit(const Model& model, const View& view, const Lighting& lighting, const LitOptions& options,
                    Progress& progress, const Clock& clock);
 

@@ -5,7 +5,8 @@ namespace {
 
 constexpr double kTwoToMinus32 = 1.0 / 4294967296.0;
 
-std::uint32_t mixed(std::uint32_t bits) {  // a bijection whose output bits all depend on all input bits (Wellons' lowbias32)
+std::uint32_t mixed(
+    std::uint32_t bits) {  // a bijection whose output bits all depend on all input bits (Wellons' lowbias32)
   bits = (bits ^ (bits >> 16)) * 0x7feb352du;
   bits = (bits ^ (bits >> 15)) * 0x846ca68bu;
   return bits ^ (bits >> 16);

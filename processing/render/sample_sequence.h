@@ -1,9 +1,10 @@
-// Numbers for one light path, a function of the pixel, the replicate and the sample's index and of nothing else: any thread may
-// draw them, in any order.
+// Numbers for one light path, a function of the pixel, the replicate and the sample's index and of nothing else: any
+// thread may draw them, in any order.
 //
-// Each pair of coordinates is the (0,2)-sequence of Sobol, its index shuffled and its digits scrambled anew for every pixel,
-// replicate and pair (Owen's nested scrambling by hashes: Burley 2020, "Practical hash-based Owen scrambling"). Any first 2^k
-// samples of a pixel are stratified in every pair; two replicates are independent, which is what tells the noise.
+// Each pair of coordinates is the (0,2)-sequence of Sobol, its index shuffled and its digits scrambled anew for every
+// pixel, replicate and pair (Owen's nested scrambling by hashes: Burley 2020, "Practical hash-based Owen scrambling").
+// Any first 2^k samples of a pixel are stratified in every pair; two replicates are independent, which is what tells
+// the noise.
 #pragma once
 
 #include <Eigen/Core>

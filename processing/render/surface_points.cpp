@@ -8,8 +8,9 @@
 namespace lumitexel {
 namespace {
 
-// A triangle's second moments are sides * [[2, -1], [-1, 2]] / 36 * sides^T, and its corners lie sqrt(8) standard deviations from its
-// middle. With 0.6 of the root of that matrix the kernel's solid part (0.9 steps) reaches just beyond them.
+// A triangle's second moments are sides * [[2, -1], [-1, 2]] / 36 * sides^T, and its corners lie sqrt(8) standard
+// deviations from its middle. With 0.6 of the root of that matrix the kernel's solid part (0.9 steps) reaches just
+// beyond them.
 Eigen::Matrix<double, 3, 2> triangle_steps(const Mesh& mesh, std::uint32_t triangle) {
   const auto& [a, b, c] = mesh.triangles[triangle];
   Eigen::Matrix<double, 3, 2> sides;
@@ -50,7 +51,8 @@ std::vector<SurfacePoint> surface_points(const Model& model) {
   for (std::uint32_t triangle = 0; triangle < has_texel.size(); ++triangle) {
     if (has_texel[triangle] != 0) continue;
     const SurfacePoint point = point_of_triangle(model, triangle);
-    const auto texel = static_cast<std::size_t>(point.y) * static_cast<std::size_t>(model.width) + static_cast<std::size_t>(point.x);
+    const auto texel =
+        static_cast<std::size_t>(point.y) * static_cast<std::size_t>(model.width) + static_cast<std::size_t>(point.x);
     if (model.material[texel] != Model::kNoMaterial) points.push_back(point);
   }
   return points;

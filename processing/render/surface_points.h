@@ -1,4 +1,5 @@
-// A model as a cloud of points: every texel that lies on the mesh, and one for each triangle that holds no texel's centre.
+// A model as a cloud of points: every texel that lies on the mesh, and one for each triangle that holds no texel's
+// centre.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +10,10 @@
 namespace lumitexel {
 
 struct SurfacePoint {
-  std::int32_t x = 0, y = 0;       // the texel
+  std::int32_t x = 0, y = 0;  // the texel
   std::uint32_t triangle = 0;
-  // How far the point reaches for its neighbours, in world, metres: the steps of one texel. Of a triangle without texels, such that
-  // the same kernel covers it.
+  // How far the point reaches for its neighbours, in world, metres: the steps of one texel. Of a triangle without
+  // texels, such that the same kernel covers it.
   Eigen::Matrix<double, 3, 2> steps = Eigen::Matrix<double, 3, 2>::Zero();
   bool of_texel = true;
 };

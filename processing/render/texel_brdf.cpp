@@ -9,7 +9,8 @@ namespace {
 
 constexpr int kDirections = 256;
 constexpr double kGrazingCosine = 1e-3;  // stands for the table's end at 0
-// Of all directions this share is drawn by the cosine, whatever the parts reflect: no direction that reflects is never drawn.
+// Of all directions this share is drawn by the cosine, whatever the parts reflect: no direction that reflects is never
+// drawn.
 constexpr double kCosineShare = 0.05;
 const LobeSampler kCosine;
 
@@ -86,7 +87,8 @@ ChannelValues ReflectingPart::albedo(double cos_o) const {
   const auto low = static_cast<std::size_t>(std::min(static_cast<int>(at), kIntervals - 1));
   const double share = at - static_cast<double>(low);
   ChannelValues values{};
-  for (std::size_t c = 0; c < values.size(); ++c) values[c] = (1.0 - share) * albedo_[low][c] + share * albedo_[low + 1][c];
+  for (std::size_t c = 0; c < values.size(); ++c)
+    values[c] = (1.0 - share) * albedo_[low][c] + share * albedo_[low + 1][c];
   return values;
 }
 
@@ -105,7 +107,8 @@ ReflectingBrdf::ReflectingBrdf(const Brdf& whole) : brdf(whole) {
   }
 }
 
-ReflectingModel::ReflectingModel(const Model& model, FitStage stage) : model_(model), single_(stage == FitStage::Single) {
+ReflectingModel::ReflectingModel(const Model& model, FitStage stage)
+    : model_(model), single_(stage == FitStage::Single) {
   const auto prepared = [](const std::vector<Brdf>& basis) {
     return std::vector<ReflectingBrdf>(basis.begin(), basis.end());
   };

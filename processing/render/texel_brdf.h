@@ -14,13 +14,13 @@ namespace lumitexel {
 // Diffuse light or the channels of one lobe that share a shape.
 class ReflectingPart {
  public:
-  // part: a BRDF of nothing but this part. Its reflected energy is tabulated over the angle, to about 1 %: from 256 directions of
-  // the part's own sampler at each of 33 cosines.
+  // part: a BRDF of nothing but this part. Its reflected energy is tabulated over the angle, to about 1 %: from 256
+  // directions of the part's own sampler at each of 33 cosines.
   ReflectingPart(const Brdf& part, const LobeSampler& sampler);
 
   const LobeSampler& sampler() const { return sampler_; }
-  // Integral of f cos_i over all wi: the share of light that leaves for a viewer at cos_o, by reciprocity the share of light from
-  // cos_o that is reflected. cos_o in (0, 1].
+  // Integral of f cos_i over all wi: the share of light that leaves for a viewer at cos_o, by reciprocity the share of
+  // light from cos_o that is reflected. cos_o in (0, 1].
   ChannelValues albedo(double cos_o) const;
 
  private:
@@ -56,7 +56,8 @@ class TexelReflection {
  public:
   explicit TexelReflection(const ReflectingModel& model) : model_(model) {}
 
-  // normal, wo: unit, in world. False where nothing is reflected towards wo: a black texel, or wo below the normal's horizon.
+  // normal, wo: unit, in world. False where nothing is reflected towards wo: a black texel, or wo below the normal's
+  // horizon.
   bool set(int x, int y, const Eigen::Vector3d& normal, const Eigen::Vector3d& wo);
 
   ChannelValues reflectance(const Eigen::Vector3d& wi) const;  // f cos_i, 1/sr

@@ -1,5 +1,5 @@
-// What rendering a model costs and how good it is: points against rays, and how much less noise drawing an environment by importance
-// leaves than drawing it evenly.
+// What rendering a model costs and how good it is: points against rays, and how much less noise drawing an environment
+// by importance leaves than drawing it evenly.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -31,7 +31,8 @@ std::vector<std::uint8_t> filled_pixels(const RenderedView& rays) {
   for (int y = 1; y + 1 < height; ++y) {
     for (int x = 1; x + 1 < width; ++x) {
       bool all = true;
-      for (int i = 0; i < 9; ++i) all = all && rays.hit[static_cast<std::size_t>((y + i / 3 - 1) * width + x + i % 3 - 1)] != 0;
+      for (int i = 0; i < 9; ++i)
+        all = all && rays.hit[static_cast<std::size_t>((y + i / 3 - 1) * width + x + i % 3 - 1)] != 0;
       filled[static_cast<std::size_t>(y * width + x)] = all;
     }
   }
@@ -54,8 +55,10 @@ void compare_points(const Model& model, int size_px) {
   }
   ErrorSums sums;
   sums.add(points.radiance, rays.radiance, counted);
-  std::printf("%5d px: PSNR %5.1f dB where both see, %.2f %% of the centres seen by one alone, %.0f holes inside; %.2f s, 16 rays a pixel %.2f s\n",
-              size_px, sums.error().psnr_db, 100.0 * one / either, holes, point_s, ray_s);
+  std::printf(
+      "%5d px: PSNR %5.1f dB where both see, %.2f %% of the centres seen by one alone, %.0f holes inside; %.2f s, 16 "
+      "rays a pixel %.2f s\n",
+      size_px, sums.error().psnr_db, 100.0 * one / either, holes, point_s, ray_s);
 }
 
 void compare_drawing(const Model& model, const Environment& sky, int size_px) {
@@ -71,8 +74,8 @@ void compare_drawing(const Model& model, const Environment& sky, int size_px) {
     const LitView lit = render_environment(model, view, sky, options);
     const double cost = *lit.noise * *lit.noise * lit.seconds;
     if (!plain) plain = cost;
-    std::printf("%12s: noise %.4f after %d samples a pixel in %.2f s: %.1f times as efficient as uniform\n", name, *lit.noise,
-                lit.samples_per_pixel, lit.seconds, *plain / cost);
+    std::printf("%12s: noise %.4f after %d samples a pixel in %.2f s: %.1f times as efficient as uniform\n", name,
+                *lit.noise, lit.samples_per_pixel, lit.seconds, *plain / cost);
   }
 }
 

@@ -1,5 +1,5 @@
-// What bounces add, against photographs: the light in the shadows of a session's held-out views, where by the model no direct light
-// falls at all, photographed and as rendered.
+// What bounces add, against photographs: the light in the shadows of a session's held-out views, where by the model no
+// direct light falls at all, photographed and as rendered.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -15,7 +15,8 @@
 namespace lumitexel {
 namespace {
 
-constexpr int kMargin_px = 3;  // to the object's outline and to light: photographs have a pixel filter, and edges of shadows err
+constexpr int kMargin_px =
+    3;  // to the object's outline and to light: photographs have a pixel filter, and edges of shadows err
 
 // Pixels of the object in which, and around which, the model is without direct light.
 std::vector<std::uint8_t> shadow_pixels(const RenderedView& direct, const std::vector<std::uint8_t>& object) {

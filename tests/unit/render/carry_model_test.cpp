@@ -11,7 +11,8 @@
 namespace lumitexel {
 namespace {
 
-// A sphere whose texels' own normals differ from its mesh's by a few degrees in a pattern; every other stripe has the mesh's.
+// A sphere whose texels' own normals differ from its mesh's by a few degrees in a pattern; every other stripe has the
+// mesh's.
 Model bumpy_sphere() {
   Brdf glossy;
   glossy.family = BrdfFamily::Ward;
@@ -22,9 +23,12 @@ Model bumpy_sphere() {
   for (int y = 0; y < 32; ++y) {
     for (int x = 0; x < 64; ++x) {
       if (x / 4 % 2 == 1) continue;
-      const double longitude = 2 * std::numbers::pi * (x + 0.5) / 64, latitude = std::numbers::pi * (0.5 - (y + 0.5) / 32);
-      const Eigen::Vector3d plain(std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude), std::sin(latitude));
-      const Eigen::Vector3d bumped = (plain + 0.1 * Eigen::Vector3d(std::sin(x), std::cos(y), std::sin(x + y))).normalized();
+      const double longitude = 2 * std::numbers::pi * (x + 0.5) / 64,
+                   latitude = std::numbers::pi * (0.5 - (y + 0.5) / 32);
+      const Eigen::Vector3d plain(std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude),
+                                  std::sin(latitude));
+      const Eigen::Vector3d bumped =
+          (plain + 0.1 * Eigen::Vector3d(std::sin(x), std::cos(y), std::sin(x + y))).normalized();
       for (int axis = 0; axis < 3; ++axis) model.normal.at(x, y, axis) = static_cast<float>(bumped[axis]);
     }
   }
@@ -61,7 +65,8 @@ TEST(CarryModel, MeshCameraAndLightMovedTogetherGiveTheSamePicture) {
   const RenderedView before = ViewRenderer(model).render(view, {}), after = ViewRenderer(carried).render(followed, {});
   int lit = 0, apart = 0;
   for (std::size_t i = 0; i < before.radiance.data.size(); ++i) {
-    // Rays in single precision meet the sphere elsewhere by 1e-7 of its size; at outline and shadow they may decide otherwise.
+    // Rays in single precision meet the sphere elsewhere by 1e-7 of its size; at outline and shadow they may decide
+    // otherwise.
     lit += before.radiance.data[i] > 0.1f;
     apart += std::abs(before.radiance.data[i] - after.radiance.data[i]) > 1e-4f * (1.0f + before.radiance.data[i]);
   }
@@ -105,7 +110,8 @@ TEST(CarryModel, TheChangedMeshMayBeSplitOtherwise) {
   for (std::size_t v = 0; v < model.mesh.positions.size(); ++v) {
     ASSERT_LT((carried.mesh.positions[v] - model.mesh.positions[v]).norm(), 1e-9);
   }
-  for (std::size_t i = 0; i < model.normal.data.size(); ++i) ASSERT_NEAR(carried.normal.data[i], model.normal.data[i], 1e-5);
+  for (std::size_t i = 0; i < model.normal.data.size(); ++i)
+    ASSERT_NEAR(carried.normal.data[i], model.normal.data[i], 1e-5);
 }
 
 TEST(CarryModel, AVertexThatIsSplitInTheChangedMeshTakesTheMeanNormal) {

@@ -38,7 +38,9 @@ TEST(Environment, LooksWhereItsHeaderSays) {
 }
 
 TEST(Environment, IsLiftedAndTurned) {
-  const auto value = [](const Eigen::Matrix3d& turn, const Eigen::Vector3d& d) { return numbered(turn).radiance(d.normalized(), 0); };
+  const auto value = [](const Eigen::Matrix3d& turn, const Eigen::Vector3d& d) {
+    return numbered(turn).radiance(d.normalized(), 0);
+  };
   // A quarter turn counter-clockwise: what lay ahead at +x now lies at +y.
   EXPECT_EQ(value(environment_from_world(Eigen::Vector3d::UnitZ(), kPi / 2), {-0.1, 1, 0.1}), 1);
   EXPECT_EQ(value(environment_from_world(Eigen::Vector3d::UnitZ(), kPi / 2), {0.1, 1, 0.1}), 2);
@@ -52,12 +54,14 @@ TEST(Environment, IsLiftedAndTurned) {
 
 TEST(Environment, DensityIntegratesToOneAndFollowsTheLight) {
   const Environment sky = uneven_sky(16, 8);
-  constexpr int kSide = 512;  // a whole number of points to a pixel: the midpoint rule is then exact but for the rows' areas
+  constexpr int kSide =
+      512;  // a whole number of points to a pixel: the midpoint rule is then exact but for the rows' areas
   double total = 0.0, bright = 0.0, dim = 0.0;
   for (int i = 0; i < kSide; ++i) {
     for (int j = 0; j < kSide; ++j) {
       const double polar = kPi * (j + 0.5) / kSide, azimuth = 2 * kPi * (i + 0.5) / kSide;
-      const Eigen::Vector3d d(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar));
+      const Eigen::Vector3d d(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
+                              std::cos(polar));
       total += sky.density(d) * std::sin(polar) * 2 * kPi * kPi / (kSide * kSide);
       if (sky.radiance(d, 0) == 20.0f) bright = sky.density(d);
       if (sky.radiance(d, 0) == 0.05f) dim = sky.density(d);
@@ -89,7 +93,8 @@ TEST(Environment, DirectionsAreDrawnWithTheirDensity) {
   for (int j = 0; j < kSide; ++j) {
     for (int i = 0; i < kSide; ++i) {
       const double polar = kPi * (j + 0.5) / kSide, azimuth = 2 * kPi * (i + 0.5) / kSide;
-      const Eigen::Vector3d d(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar));
+      const Eigen::Vector3d d(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
+                              std::cos(polar));
       const double area = std::sin(polar) * 2 * kPi * kPi / (kSide * kSide);
       expected += d * sky.radiance(d, 1) * area;
       if (sky.density(d) > 0.0) lit += area;
@@ -109,7 +114,8 @@ TEST(Environment, FilesAreScaledAndCheckedByName) {
   EXPECT_BAD_INPUT(read_environment(file, 1.0, straight, 1), "sky.exr", "3 channels");
   EXPECT_BAD_INPUT(read_environment(file, 0.0, straight, 3), "scale");
   write_exr_colour(file, Image(4, 2, 1, 0.5f));
-  EXPECT_EQ(read_environment(file, 1.0, straight, 3).radiance(Eigen::Vector3d::UnitX(), 2), 0.5) << "gray for all channels";
+  EXPECT_EQ(read_environment(file, 1.0, straight, 3).radiance(Eigen::Vector3d::UnitX(), 2), 0.5)
+      << "gray for all channels";
   Image image(4, 2, 3, 0.5f);
   image.at(2, 1, 0) = std::numeric_limits<float>::quiet_NaN();
   write_exr_colour(file, image);

@@ -88,7 +88,8 @@ TEST(LobeSampling, DirectionsAreDrawnWithTheirDensity) {
       // Stratified points converge faster than 1 / sqrt(N) = 0.8 %, the quadrature to a few 1e-4 at the visible rim.
       constexpr double kTolerance = 3e-3;
       EXPECT_NEAR(counted, mass, kTolerance) << lobe.name << " " << angle;
-      for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(drawn[axis], moment[axis], kTolerance) << lobe.name << " " << angle << " " << axis;
+      for (int axis = 0; axis < 3; ++axis)
+        EXPECT_NEAR(drawn[axis], moment[axis], kTolerance) << lobe.name << " " << angle << " " << axis;
     }
   }
 }
@@ -115,10 +116,11 @@ TEST(LobeSampling, ATexelsMixtureReflectsTheEnergyOfQuadrature) {
   model.weights.data = {0.7f, 0.4f};
   const ReflectingModel reflecting(model, FitStage::Pfa);
   TexelReflection texel(reflecting);
-  const Eigen::Vector3d normal = Eigen::Vector3d(0.3, -0.2, 0.9).normalized(), wo = Eigen::Vector3d(-0.5, 0.3, 0.6).normalized();
+  const Eigen::Vector3d normal = Eigen::Vector3d(0.3, -0.2, 0.9).normalized(),
+                        wo = Eigen::Vector3d(-0.5, 0.3, 0.6).normalized();
   ASSERT_TRUE(texel.set(0, 0, normal, wo));
-  const double expected = 
-      0.7f * quadrature_albedo(first, viewer(std::acos(normal.dot(wo)))) + 0.4f * quadrature_albedo(second, viewer(std::acos(normal.dot(wo))));
+  const double expected = 0.7f * quadrature_albedo(first, viewer(std::acos(normal.dot(wo)))) +
+                          0.4f * quadrature_albedo(second, viewer(std::acos(normal.dot(wo))));
   constexpr int kSamples = 1 << 13;
   double energy = 0.0;
   for (int i = 0; i < kSamples; ++i) {

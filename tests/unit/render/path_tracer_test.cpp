@@ -74,7 +74,8 @@ View view_from_within(int size_px) {
 TEST(PathTracer, AFlatDiffusePlateUnderAConstantSkyShinesByItsAlbedo) {
   const Model model = model_of(square_mesh(), 4, 4, diffuse_brdf(0.1, 0.2, 0.3));
   const Environment sky = constant_sky(1.0, 2.0, 0.5);
-  for (const auto sampling : {EnvironmentSampling::Combined, EnvironmentSampling::Environment, EnvironmentSampling::Brdf}) {
+  for (const auto sampling :
+       {EnvironmentSampling::Combined, EnvironmentSampling::Environment, EnvironmentSampling::Brdf}) {
     PathOptions path;
     path.sampling = sampling;
     const LitView lit = lit_by(model, view_from_above(16, 5.0), {{}, &sky}, path, 256);
@@ -92,8 +93,8 @@ TEST(PathTracer, AFlatDiffusePlateUnderAConstantSkyShinesByItsAlbedo) {
   }
 }
 
-// Light from above both the plate and the tilted normal's horizon: of a cosine lobe about the normal the part above the plate,
-// (1 + cos) / 2. Nothing is reflected from below the plate.
+// Light from above both the plate and the tilted normal's horizon: of a cosine lobe about the normal the part above the
+// plate, (1 + cos) / 2. Nothing is reflected from below the plate.
 TEST(PathTracer, ATiltedNormalLosesWhatThePlateHides) {
   Model model = model_of(square_mesh(), 1, 1, diffuse_brdf(0.3, 0.3, 0.3));
   const Eigen::Vector3f tilted(0.8f, 0.0f, 0.6f);
@@ -107,12 +108,12 @@ TEST(PathTracer, ATiltedNormalLosesWhatThePlateHides) {
 // A lobe's reflected energy, seen through the whole renderer: constant light times the albedo by quadrature.
 TEST(PathTracer, AGlossyPlateUnderAConstantSkyShinesByTheAlbedoOfQuadrature) {
   const Environment sky = constant_sky(1.0, 1.0, 1.0);
-  for (const auto& [family, strength, shape] : {std::tuple{BrdfFamily::Ggx, 0.5, 0.15}, {BrdfFamily::Ward, 0.4, 0.1},
-                                                {BrdfFamily::Lafortune, 8.0, 80.0}}) {
+  for (const auto& [family, strength, shape] :
+       {std::tuple{BrdfFamily::Ggx, 0.5, 0.15}, {BrdfFamily::Ward, 0.4, 0.1}, {BrdfFamily::Lafortune, 8.0, 80.0}}) {
     const Brdf brdf = glossy_brdf(family, std::log(strength), shape);
     const Model model = model_of(square_mesh(), 1, 1, brdf);
     View view = view_from_above(8, 40.0);  // all but parallel rays, turned to look along a slope of 45 degrees
-    view.camera.focal_x_px *= 1.5;  // the plate fills the picture
+    view.camera.focal_x_px *= 1.5;         // the plate fills the picture
     view.camera.focal_y_px *= 1.5;
     const Eigen::AngleAxisd lean(kPi / 4, Eigen::Vector3d::UnitX());
     view.camera_from_world = view.camera_from_world * Eigen::Isometry3d(lean);
@@ -145,7 +146,8 @@ TEST(PathTracer, AllWaysOfDrawingTheSkyAgree) {
     return mean_of(lit_by(model, view, {{}, &sky}, path, samples));
   };
   const Mean uniform = mean(EnvironmentSampling::Uniform, 1024);
-  for (const auto sampling : {EnvironmentSampling::Combined, EnvironmentSampling::Environment, EnvironmentSampling::Brdf}) {
+  for (const auto sampling :
+       {EnvironmentSampling::Combined, EnvironmentSampling::Environment, EnvironmentSampling::Brdf}) {
     const Mean other = mean(sampling, sampling == EnvironmentSampling::Brdf ? 2048 : 256);
     EXPECT_NEAR(other.value, uniform.value, kSigmas * std::hypot(other.sigma, uniform.sigma));
     EXPECT_LT(kSigmas * std::hypot(other.sigma, uniform.sigma), 0.03 * uniform.value) << "no agreement by vagueness";
@@ -154,8 +156,8 @@ TEST(PathTracer, AllWaysOfDrawingTheSkyAgree) {
       << "what it is for";
 }
 
-// A lamp in the middle of a closed diffuse sphere: every point gets the same, from the lamp and then from all others, so bounce k adds
-// kd E (pi kd)^k.
+// A lamp in the middle of a closed diffuse sphere: every point gets the same, from the lamp and then from all others,
+// so bounce k adds kd E (pi kd)^k.
 TEST(PathTracer, LightInAClosedSphereIsAGeometricSeries) {
   const double kd = 0.6 / kPi;
   const Model model = model_of(hollow_sphere(false), 4, 2, diffuse_brdf(kd, kd, kd));
@@ -187,8 +189,8 @@ TEST(PathTracer, ABowlUnderAConstantSkyIsAGeometricSeriesToo) {
   }
 }
 
-// A BRDF that reflects half more than it gets: direct light as it says, between surfaces no gain, so each bounce adds as much as
-// the first light did.
+// A BRDF that reflects half more than it gets: direct light as it says, between surfaces no gain, so each bounce adds
+// as much as the first light did.
 TEST(PathTracer, NoBounceGainsEnergy) {
   const double kd = 1.5 / kPi;
   const Model model = model_of(hollow_sphere(false), 4, 2, diffuse_brdf(kd, kd, kd));
@@ -237,7 +239,8 @@ TEST(PathTracer, LightsAddUp) {
   directional.intensity = {1.0, 2.0, 3.0};
   const auto radiance = [&](const Lighting& lighting) { return lit_by(model, view, lighting, {}, 8).radiance; };
   const Image all = radiance({{point, directional}, &sky});
-  const Image one = radiance({{point}, nullptr}), two = radiance({{directional}, nullptr}), three = radiance({{}, &sky});
+  const Image one = radiance({{point}, nullptr}), two = radiance({{directional}, nullptr}),
+              three = radiance({{}, &sky});
   for (std::size_t i = 0; i < all.data.size(); ++i) {
     const double sum = static_cast<double>(one.data[i]) + two.data[i] + three.data[i];  // the same numbers were drawn
     EXPECT_NEAR(all.data[i], sum, 1e-5 * (1.0 + sum));

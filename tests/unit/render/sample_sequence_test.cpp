@@ -20,7 +20,8 @@ std::vector<Eigen::Vector2d> points(int x, int y, int replicate, int pair, std::
   return result;
 }
 
-// The property that defines a (0,2)-sequence: of its first 2^k points one lies in each box of 2^-a by 2^-(k-a), for every a.
+// The property that defines a (0,2)-sequence: of its first 2^k points one lies in each box of 2^-a by 2^-(k-a), for
+// every a.
 TEST(SampleSequence, EveryPairOfEveryPixelIsStratifiedInAllBoxes) {
   for (const int pair : {0, 1, 5}) {
     for (const int bits : {3, 4, 7}) {
@@ -40,7 +41,8 @@ TEST(SampleSequence, EveryPairOfEveryPixelIsStratifiedInAllBoxes) {
 
 double correlation(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vector2d>& b) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i].x() - 0.5) * (b[i].x() - 0.5) + (a[i].y() - 0.5) * (b[i].y() - 0.5);
+  for (std::size_t i = 0; i < a.size(); ++i)
+    sum += (a[i].x() - 0.5) * (b[i].x() - 0.5) + (a[i].y() - 0.5) * (b[i].y() - 0.5);
   return sum * 6.0 / static_cast<double>(a.size());
 }
 

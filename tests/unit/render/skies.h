@@ -24,7 +24,8 @@ inline Environment uneven_sky(int width, int height) {
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const int id = (x * 7 + y * 13) % 29;
-      for (int c = 0; c < 3; ++c) image.at(x, y, c) = id == 0 ? 20.0f + 5.0f * static_cast<float>(c) : 0.05f * static_cast<float>(id % 4);
+      for (int c = 0; c < 3; ++c)
+        image.at(x, y, c) = id == 0 ? 20.0f + 5.0f * static_cast<float>(c) : 0.05f * static_cast<float>(id % 4);
     }
   }
   return Environment(std::move(image), Eigen::Matrix3d::Identity(), "uneven sky");

@@ -17,7 +17,8 @@ namespace {
 
 constexpr double kRounding = 2e-6;
 
-// A sphere of two mixed materials in waves as wide as 16 texels, one of them glossy, that holds a second, small one in its shadow.
+// A sphere of two mixed materials in waves as wide as 16 texels, one of them glossy, that holds a second, small one in
+// its shadow.
 Model two_spheres() {
   Mesh mesh = sphere_mesh(96, 48), small = sphere_mesh(48, 24);
   for (Eigen::Vector2d& uv : mesh.texcoords) uv.y() *= 0.75;
@@ -38,7 +39,8 @@ Model two_spheres() {
   model.weights = Image(384, 256, 2);
   for (int y = 0; y < 256; ++y) {
     for (int x = 0; x < 384; ++x) {
-      const double share = 0.5 + 0.5 * std::sin(2 * std::numbers::pi * x / 16.0) * std::cos(2 * std::numbers::pi * y / 16.0);
+      const double share =
+          0.5 + 0.5 * std::sin(2 * std::numbers::pi * x / 16.0) * std::cos(2 * std::numbers::pi * y / 16.0);
       model.weights.at(x, y, 0) = static_cast<float>(share);
       model.weights.at(x, y, 1) = static_cast<float>(1.0 - share);
     }
@@ -88,8 +90,10 @@ TEST(Splat, ShowsWhatTheRayTracerShows) {
   const Model model = two_spheres();
   for (const int size_px : {64, 240}) {  // texels smaller than pixels, and larger
     const View view = lit_view(size_px);
-    const Comparison result = compared(splat(model, view, {view.light}, FitStage::Pfa), ViewRenderer(model).render(view, {FitStage::Pfa, 64}));
-    // 38.4 and 38.6 dB: what differs are the shadow's edges, blurred over a texel, and the waves, flattened a little by the kernel.
+    const Comparison result = compared(splat(model, view, {view.light}, FitStage::Pfa),
+                                       ViewRenderer(model).render(view, {FitStage::Pfa, 64}));
+    // 38.4 and 38.6 dB: what differs are the shadow's edges, blurred over a texel, and the waves, flattened a little by
+    // the kernel.
     EXPECT_GT(result.psnr_db, 37.0) << size_px;
     EXPECT_LT(result.seen_by_one, 0.005) << "few centres at the outline";
   }
@@ -109,8 +113,8 @@ TEST(Splat, AFlatPlateIsEvenAndWithoutHolesAtAnyScale) {
   }
 }
 
-// Nothing of a bright plate two spacings behind shines through, also seen aslant, where a pixel's depths spread. A lamp between the
-// two lights it.
+// Nothing of a bright plate two spacings behind shines through, also seen aslant, where a pixel's depths spread. A lamp
+// between the two lights it.
 TEST(Splat, WhatIsHiddenDoesNotShineThrough) {
   Mesh mesh = square_mesh();
   constexpr int kTexels = 64;
@@ -127,7 +131,8 @@ TEST(Splat, WhatIsHiddenDoesNotShineThrough) {
   for (std::size_t t = 0; t < model.material.size(); ++t) model.material[t] = t % kTexels >= kTexels / 2;
   for (const double slope : {0.0, 0.9}) {
     View view = view_from_above(80, 6.0);
-    view.camera_from_world = view.camera_from_world * Eigen::Isometry3d(Eigen::AngleAxisd(slope, Eigen::Vector3d::UnitX()));
+    view.camera_from_world =
+        view.camera_from_world * Eigen::Isometry3d(Eigen::AngleAxisd(slope, Eigen::Vector3d::UnitX()));
     view.light.type = Light::Type::Point;
     view.light.vector_in_world = {0.0, 0.0, -0.5 * behind};
     const RenderedView rays = ViewRenderer(model).render(view, {});
@@ -138,7 +143,9 @@ TEST(Splat, WhatIsHiddenDoesNotShineThrough) {
       for (int x = 0; x < 80; ++x) {
         const bool front = rays.hit[static_cast<std::size_t>(y * 80 + x)] != 0 && position.at(x, y, 2) > -0.5 * behind;
         const double margin = 4.0 / kTexels;  // the plate's edge is as sharp as its texels
-        if (!front || std::abs(position.at(x, y, 0)) > 1 - 2 * margin || std::abs(position.at(x, y, 1)) > 1 - 2 * margin) continue;
+        if (!front || std::abs(position.at(x, y, 0)) > 1 - 2 * margin ||
+            std::abs(position.at(x, y, 1)) > 1 - 2 * margin)
+          continue;
         ++compared_pixels;
         ASSERT_EQ(points.radiance.at(x, y), 0.0f) << slope << " " << x << " " << y;
       }
