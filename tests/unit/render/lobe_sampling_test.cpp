@@ -135,5 +135,23 @@ TEST(LobeSampling, ATexelsMixtureReflectsTheEnergyOfQuadrature) {
   EXPECT_FALSE(texel.set(0, 0, normal, -wo)) << "seen from below";
 }
 
+// Every stage that a model can be evaluated at, here with principal functions.
+TEST(TexelReflection, IsTheModelsBrdfAtEveryStage) {
+  Model model = model_of(square_mesh(), 1, 1, diffuse_brdf(0.1, 0.2, 0.3));
+  model.materials = {{brdf_of(kLobes[0]), {brdf_of(kLobes[3]), diffuse_brdf(0.1, 0.1, 0.1)}, {brdf_of(kLobes[5])}}};
+  model.weights = Image(1, 1, 2);
+  model.weights.data = {0.5f, 0.25f};
+  model.projection_weights = Image(1, 1, 1, 0.75f);
+  const Eigen::Vector3d normal = Eigen::Vector3d::UnitZ(), wo = viewer(0.6), wi = viewer(-0.5);
+  for (const FitStage stage : kFitStages) {
+    const ReflectingModel reflecting(model, stage);
+    TexelReflection texel(reflecting);
+    ASSERT_TRUE(texel.set(0, 0, normal, wo));
+    const double expected = wi.z() * evaluate_texel(model, stage, 0, 0, 1, lobe_geometry(normal, wi, wo));
+    EXPECT_GT(expected, 0.0);
+    EXPECT_NEAR(texel.reflectance(wi)[1], expected, 1e-12 * expected) << to_string(stage);
+  }
+}
+
 }  // namespace
 }  // namespace lumitexel
