@@ -1,5 +1,6 @@
 #include "processing/render/texel_brdf.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,5 +1,6 @@
 #include "processing/render/texel_triangles.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
