@@ -5,10 +5,12 @@
 #include "processing/image/raster_file.h"
 #include "processing/image/tone_map.h"
 #include "processing/model/image_error.h"
-#include "processing/model/model_file.h"
 #include "processing/model/render_view.h"
 #include "rig/console/command.h"
+#include "rig/console/input_folder.h"
+#include "rig/console/named_value.h"
 #include "rig/console/view_options.h"
+#include "rig/view_selection.h"
 
 namespace lumitexel {
 namespace {
@@ -21,15 +23,17 @@ struct RenderSettings {
   int samples_per_pixel = 1;
 };
 
+std::vector<std::pair<std::string, Aov>> aov_words() {
+  return {{"radiance", Aov::Radiance}, {"normal", Aov::Normal}, {"position", Aov::Position},
+          {"cluster", Aov::Cluster},   {"samples", Aov::Samples}, {"sigma", Aov::Sigma}};
+}
+
 View view_of_session(const RenderSettings& settings, Progress& progress) {
-  const SessionStore store = SessionStore::open(settings.session, OpenMode::ReadOnly);
+  const SessionStore store = session_given("--session", settings.session);
   const CalibratedSession session = calibrate_session(store, progress);
-  std::string names;
-  for (const View& view : session.views) {
-    if (view.name == settings.view) return view;
-    names += (names.empty() ? "" : ", ") + view.name;
-  }
-  throw BadInput("--view", "'" + settings.view + "'", "one of " + names);
+  std::vector<std::string> names;
+  for (const View& view : session.views) names.push_back(view.name);
+  return session.views[view_named("--view", settings.view, names)];
 }
 
 void require_one_way(const RenderSettings& settings) {
@@ -65,11 +69,11 @@ double preview_white(const Image& image) {
 
 CommandResult render_command(const RenderSettings& settings, CommandContext& context) {
   require_one_way(settings);
-  const Aov aov = aov_from_string(settings.aov);
+  const Aov aov = named_value("--aov", settings.aov, aov_words());
   require_options_that_act(settings, aov);
-  const Model model = read_model(settings.model);
+  const Model model = model_given("MODEL", settings.model);
   RenderOptions options;
-  if (!settings.stage.empty()) options.stage = fit_stage_from_string(settings.stage);
+  if (!settings.stage.empty()) options.stage = named_value("--stage", settings.stage, words_by_to_string(kFitStages));
   options.samples_per_pixel = settings.samples_per_pixel;
   const View view = settings.session.empty() ? parse_view(settings.given, model.channels)
                                              : view_of_session(settings, context.progress);
@@ -100,7 +104,7 @@ void add_render_command(CLI::App& app, CommandAction& action) {
   command->add_option("--out", settings->out, "EXR file to write: linear radiance, or the map asked for with --aov")
       ->required();
   command->add_option("--session", settings->session, "Session whose camera and light are taken, with --view");
-  command->add_option("--view", settings->view, "The view's name in the session");
+  command->add_option("--view", settings->view, "The view's name in the session; an extension such as .exr may be left out");
   command->add_option("--camera", settings->given.camera,
                       "\"eye;target;up;fov;WxH\": three points x,y,z in metres, the vertical field of view in degrees, "
                       "the size in pixels");
@@ -109,7 +113,7 @@ void add_render_command(CLI::App& app, CommandAction& action) {
                       "W/sr, one number or one a channel; default: white diffuse at the target has radiance 1");
   command->add_option("--stage", settings->stage, "single (one BRDF for all), cluster (one a material), projection (a mixture a texel) or pfa (of principal functions, if "
                       "the fit sought them); default: all that the model holds");
-  command->add_option("--aov", settings->aov, "radiance, normal, position, cluster, samples or sigma")
+  command->add_option("--aov", settings->aov, words_of(aov_words()))
       ->capture_default_str();
   command->add_option("--spp", settings->samples_per_pixel, "Rays a pixel for radiance; 1 is the pixel's centre")
       ->capture_default_str();

@@ -2,9 +2,9 @@
 #include <memory>
 #include <optional>
 
-#include "processing/model/model_file.h"
 #include "processing/report/model_report.h"
 #include "rig/console/command.h"
+#include "rig/console/input_folder.h"
 #include "rig/whole_file.h"
 
 namespace lumitexel {
@@ -22,11 +22,11 @@ std::string title_of(const fs::path& model) {
 }
 
 CommandResult report_command(const ReportSettings& settings, CommandContext& context) {
-  const Model model = read_model(settings.model);
+  const Model model = model_given("MODEL", settings.model);
   std::optional<CalibratedSession> session;
   std::optional<Evaluation> evaluation;
   if (!settings.session.empty()) {
-    const SessionStore store = SessionStore::open(settings.session, OpenMode::ReadOnly);
+    const SessionStore store = session_given("--session", settings.session);
     session = calibrate_session(store, context.progress);
     evaluation = evaluate_model(model, *session, context.progress);
   }
@@ -54,7 +54,7 @@ void add_report_command(CLI::App& app, CommandAction& action) {
       app.add_subcommand("report", "One self-contained HTML page: pictures, errors, materials, timings");
   command->add_option("MODEL", settings->model, "Folder of the model")->required();
   command->add_option("--session", settings->session, "Session whose photographs are shown beside their re-renderings");
-  command->add_option("--out", settings->out, "HTML file to write (default: MODEL/report.html)");
+  command->add_option("--out,--page", settings->out, "HTML file to write (default: MODEL/report.html)");
   command->callback([settings, &action] {
     action = [settings](CommandContext& context) { return report_command(*settings, context); };
   });
