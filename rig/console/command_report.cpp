@@ -6,6 +6,7 @@
 #include "rig/console/command.h"
 #include "rig/console/input_folder.h"
 #include "rig/whole_file.h"
+#include "sim/sgd_brdf.h"
 
 namespace lumitexel {
 namespace {
@@ -19,6 +20,18 @@ struct ReportSettings {
 std::string title_of(const fs::path& model) {
   const fs::path whole = fs::absolute(model).lexically_normal();
   return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
+
+std::vector<KnownMaterial> measured_materials() {
+  std::vector<KnownMaterial> known;
+  for (const std::string& name : sgd_table_names(selected_sgd_table())) {
+    const SgdBrdf brdf = sgd_from_table(selected_sgd_table(), name, "the built-in SGD table");
+    known.push_back({name, [brdf](const LobeGeometry& geometry) {
+                       const Eigen::Array3d f = evaluate(brdf, geometry);
+                       return ChannelValues{f[0], f[1], f[2]};
+                     }});
+  }
+  return known;
 }
 
 CommandResult report_command(const ReportSettings& settings, CommandContext& context) {
@@ -35,12 +48,15 @@ CommandResult report_command(const ReportSettings& settings, CommandContext& con
     subject.session = &*session;
     subject.evaluation = &*evaluation;
   }
+  const std::vector<KnownMaterial> known = measured_materials();
+  if (model.channels == kMaxChannels) subject.known = known;
   const fs::path out = settings.out.empty() ? fs::path(settings.model) / "report.html" : fs::path(settings.out);
   const std::string page = model_report(subject, context.progress);
   write_whole_file(out, page);
 
   CommandResult result;
-  result.json = {{"out", out.string()}, {"bytes", page.size()}};
+  result.json = nlohmann::json::parse(report_json(subject));
+  result.json.update({{"out", out.string()}, {"bytes", page.size()}});
   result.text =
       out.string() + ": open it in a browser (" + std::to_string(page.size() / 1024) + " KiB, works offline)\n";
   return result;
