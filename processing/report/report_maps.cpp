@@ -30,7 +30,7 @@ Json share_below(std::vector<float> values, double share) {
   return static_cast<double>(*at);
 }
 
-// White where `position` is 1, in the colour of `low` where it is 0; light gray where the map says nothing.
+// Near-white is good; few_is_bad: blue towards 0, else red towards `full`. White beside the object.
 Image shown(const Image& map, const Image& normal, double full, bool few_is_bad) {
   Image picture(map.width, map.height, 3, 1.0f);
   for (int y = 0; y < map.height; ++y) {
@@ -76,7 +76,8 @@ std::string coverage_section(const Model& model, const ViewRenderer& renderer, c
           percent(sigma.at("median")) + ", nine tenths within " + percent(sigma.at("nine_tenths")) + ".");
   return html::section("Where it was measured, and how surely",
                        "Points that few photographs saw lit are less certain. Blue on the left and red on the right is where more "
-                       "photographs would help most; what was never measured borrows from its neighbours and is blue and red.",
+                       "photographs would help most; what was never measured borrows from its neighbours and is blue and red. Thin lines are edges of the "
+                       "atlas's patches, where a texel borrows, too.",
                        "<div class=\"row\">" + views + uncertain + "</div>\n");
 }
 

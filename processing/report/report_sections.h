@@ -29,7 +29,7 @@ std::string setup_section(const CalibratedSession& session);
 
 // ---- coverage and uncertainty (report_maps.cpp)
 // {"texels", "texels_measured", "samples_a_texel": {"tenth", "median", "most"}, "relative_sigma": {"median", "nine_tenths"}}, over the texels
-// that were fitted to samples; null where there are none.
+// that were fitted to samples; null where there are none. "texels" have a material, the filled-in margin of the patches included.
 nlohmann::json coverage_json(const Model& model);
 std::string coverage_section(const Model& model, const ViewRenderer& renderer, const View& view);
 
