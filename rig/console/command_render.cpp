@@ -6,28 +6,32 @@
 #include "processing/image/raster_file.h"
 #include "processing/image/tone_map.h"
 #include "processing/model/image_error.h"
-#include "processing/model/model_file.h"
 #include "processing/render/carry_model.h"
 #include "processing/render/render_lit.h"
 #include "processing/render/splat.h"
 #include "processing/surface/mesh_file.h"
 #include "rig/console/command.h"
+#include "rig/console/input_folder.h"
+#include "rig/console/named_value.h"
 #include "rig/console/render_settings.h"
+#include "rig/view_selection.h"
 
 namespace lumitexel {
 namespace {
 
 constexpr double kWhiteFraction = 0.99;  // of the preview: the brightest hundredth may clip
 
+std::vector<std::pair<std::string, Aov>> aov_words() {
+  return {{"radiance", Aov::Radiance}, {"normal", Aov::Normal}, {"position", Aov::Position},
+          {"cluster", Aov::Cluster},   {"samples", Aov::Samples}, {"sigma", Aov::Sigma}};
+}
+
 View view_of_session(const RenderSettings& settings, Progress& progress) {
-  const SessionStore store = SessionStore::open(settings.session, OpenMode::ReadOnly);
+  const SessionStore store = session_given("--session", settings.session);
   const CalibratedSession session = calibrate_session(store, progress);
-  std::string names;
-  for (const View& view : session.views) {
-    if (view.name == settings.view) return view;
-    names += (names.empty() ? "" : ", ") + view.name;
-  }
-  throw BadInput("--view", "'" + settings.view + "'", "one of " + names);
+  std::vector<std::string> names;
+  for (const View& view : session.views) names.push_back(view.name);
+  return session.views[view_named("--view", settings.view, names)];
 }
 
 double preview_white(const Image& image) {
@@ -90,9 +94,9 @@ void add_outcome(const SplatView& points, CommandResult& result) {
 }
 
 CommandResult render_command(const RenderSettings& settings, CommandContext& context) {
-  const Aov aov = aov_from_string(settings.aov);
+  const Aov aov = named_value("--aov", settings.aov, aov_words());
   check_render_settings(settings, aov);
-  Model model = read_model(settings.model);
+  Model model = model_given("MODEL", settings.model);
   if (!settings.mesh.empty()) model = carried_to(std::move(model), read_mesh(settings.mesh), settings.mesh);
   const Rendering rendering = rendered(settings, model, aov, context.progress);
   const Image& image = rendering.image;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "drivers/error.h"
+#include "rig/console/named_value.h"
 
 namespace lumitexel {
 namespace {
@@ -14,7 +15,7 @@ constexpr int kEndlessSamples = 1 << 20;  // where time or noise are to end it: 
 
 void add_view_options(CLI::App& command, RenderSettings& settings) {
   command.add_option("--session", settings.session, "Session whose camera and light are taken, with --view");
-  command.add_option("--view", settings.view, "The view's name in the session");
+  command.add_option("--view", settings.view, "The view's name in the session; an extension such as .exr may be left out");
   command.add_flag("--camera-only", settings.camera_only,
                    "Of the session's view only the camera; the light comes from the options below");
   command.add_option("--camera", settings.given.camera,
@@ -158,7 +159,7 @@ void check_render_settings(const RenderSettings& settings, Aov aov) {
 
 LitOptions lit_options(const RenderSettings& settings) {
   LitOptions options;
-  if (!settings.stage.empty()) options.stage = fit_stage_from_string(settings.stage);
+  if (!settings.stage.empty()) options.stage = named_value("--stage", settings.stage, words_by_to_string(kFitStages));
   options.path.bounces = settings.bounces;
   options.path.show_environment = settings.show_environment;
   const bool ends_otherwise = settings.time_limit_s.has_value() || settings.noise.has_value();
