@@ -48,7 +48,7 @@ float rounded(double unit) { return static_cast<float>(std::round(255.0 * std::c
 
 std::vector<GltfMaterial> refit_texels(const Model& model, Progress& progress) {
   std::vector<MaterialRefit> refits;
-  for (const ModelMaterial& material : model.materials) refits.emplace_back(material.brdf, material.basis);
+  for (const ModelMaterial& material : model.materials) refits.emplace_back(material.basis);
   std::vector<GltfMaterial> texels(model.material.size());
   progress.begin("refitting texels", model.height, "rows");
   std::atomic<int> done = 0;

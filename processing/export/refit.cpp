@@ -9,14 +9,15 @@ namespace lumitexel {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kViewAngles_deg[] = {8, 25, 40, 55, 70};  // where objects are seen; beyond lies little of a picture
+constexpr double kViewAngles_deg[] = {5, 15, 25, 35, 45};  // where most of a picture is seen
 constexpr int kTilts = 36, kTurns = 6;
 constexpr double kLeastTilt = 2e-3, kTiltRatio = 1.215;  // up to 1.85 rad; what leaves the hemisphere is dropped
-constexpr double kDarkFloor = 1e-3;                      // of f cos_i, 1/sr: darker directions count no more than this
 constexpr double kMostF0 = 0.98;                         // leaves diffuse light something to be divided by
 
-using Direction = RefitDirection;
-constexpr int kReweightings = 4;
+struct Direction {
+  LobeGeometry geometry;
+  double weight = 0;  // solid angle of wi times the share of a sphere's picture that is seen at this angle
+};
 
 std::vector<Direction> sampled_directions() {
   std::vector<Direction> directions;
@@ -32,7 +33,7 @@ std::vector<Direction> sampled_directions() {
         const double cos_d = half.dot(wo);
         const Eigen::Vector3d wi = (2.0 * cos_d * half - wo).normalized();
         if (cos_d <= 0.0 || wi.z() <= 0.02) continue;
-        directions.push_back({lobe_geometry(normal, wi, wo), 4.0 * cos_d * std::sin(tilt) * tilt});
+        directions.push_back({lobe_geometry(normal, wi, wo), 4.0 * cos_d * std::sin(tilt) * tilt * std::sin(angle_deg * kDegree) * wo.z()});
       }
     }
   }
@@ -64,33 +65,12 @@ Pair bounded_minimum(double dd, double ds, double ss, double d, double s) {
 
 }  // namespace
 
-MaterialRefit::MaterialRefit(const Brdf& cluster, const std::vector<Brdf>& basis) {
+MaterialRefit::MaterialRefit(const std::vector<Brdf>& basis) {
   const std::vector<Direction> directions = sampled_directions();
-  // (sqrt f - sqrt g)^2 is (f - g)^2 / (sqrt f + sqrt g)^2. Weighting by f alone would let GGX's tails, where f is all but nothing,
-  // outweigh the highlight; so the fitted g takes part, from g = infinity (plain least squares of f cos_i) on.
-  std::vector<double> weights;
-  for (const Direction& d : directions) weights.push_back(d.solid_angle * d.geometry.cos_i * d.geometry.cos_i);
-  for (int round = 0; round < kReweightings; ++round) {
-    tabulate(directions, weights, {cluster});
-    const float whole[] = {1.0f};
-    const GltfMaterial fitted = fit(whole);
-    for (std::size_t n = 0; n < directions.size(); ++n) {
-      const LobeGeometry& geometry = directions[n].geometry;
-      const auto f = three_channels(cluster, geometry), g = evaluate(fitted, geometry);
-      const double roots = std::sqrt((f[0] + f[1] + f[2]) / 3.0) + std::sqrt((g[0] + g[1] + g[2]) / 3.0);
-      weights[n] = directions[n].solid_angle * geometry.cos_i * geometry.cos_i / (geometry.cos_i * roots * roots + kDarkFloor);
-    }
-  }
-  tabulate(directions, weights, basis);
-}
-
-void MaterialRefit::tabulate(const std::vector<RefitDirection>& directions, const std::vector<double>& weights,
-                             const std::vector<Brdf>& basis) {
   std::vector<std::vector<std::array<double, 3>>> values(basis.size());
   for (const Direction& direction : directions) {
     for (std::size_t k = 0; k < basis.size(); ++k) values[k].push_back(three_channels(basis[k], direction.geometry));
   }
-  tables_.clear();
   for (int i = 0; i < kRoughnesses; ++i) {
     Table table;
     table.roughness = (i + 1.0) / kRoughnesses;
@@ -99,7 +79,8 @@ void MaterialRefit::tabulate(const std::vector<RefitDirection>& directions, cons
     for (std::size_t n = 0; n < directions.size(); ++n) {
       const GltfFacets facets = gltf_facets(table.roughness, directions[n].geometry);
       const double diffuse = 1.0 - facets.fall, specular = facets.value * (1.0 - facets.fall);
-      const double offset = facets.value * facets.fall, weight = weights[n];
+      const double offset = facets.value * facets.fall, cos_i = directions[n].geometry.cos_i;
+      const double weight = directions[n].weight * cos_i * cos_i;
       table.dd += weight * diffuse * diffuse;
       table.ds += weight * diffuse * specular;
       table.ss += weight * specular * specular;
