@@ -29,6 +29,7 @@ const std::vector<void (*)(CLI::App&, CommandAction&)> kCommands = {
     add_render_command,
     add_evaluate_command,
     add_tradeoff_command,
+    add_export_command,
     add_report_command,
     add_selftest_command,
 };
