@@ -20,23 +20,25 @@ const std::vector<std::string> kWeightPlanes{"R", "G", "B", "A"};  // names that
 constexpr const char* kWeights = "weights_";
 constexpr const char* kProjectionWeights = "projection_weights_";
 
-std::string weights_file(const char* prefix, int file) { return prefix + std::to_string(file) + ".exr"; }
+constexpr const char* kBeforeNormals = "before_normals_";
+
+std::string weights_file(const std::string& prefix, int file) { return prefix + std::to_string(file) + ".exr"; }
 int weight_files(int basis_size) { return (basis_size + kPlanesPerFile - 1) / kPlanesPerFile; }
 
 std::size_t texels(const Model& model) {
   return static_cast<std::size_t>(model.width) * static_cast<std::size_t>(model.height);
 }
 
-void write_cluster_map(const fs::path& path, const Model& model) {
+void write_cluster_map(const fs::path& path, const Model& model, const std::vector<std::int16_t>& map) {
   ExrPlane plane{"Y", ExrPixel::Uint, std::vector<float>(texels(model))};
-  std::transform(model.material.begin(), model.material.end(), plane.data.begin(), [](std::int16_t material) {
+  std::transform(map.begin(), map.end(), plane.data.begin(), [](std::int16_t material) {
     return material == Model::kNoMaterial ? kNoMaterialOnDisk : static_cast<float>(material);
   });
   write_exr(path, {model.width, model.height, {std::move(plane)}});
 }
 
 // Files are always four planes wide; planes past the last weight are zero.
-void write_weights(const fs::path& directory, const char* prefix, const Image& weights) {
+void write_weights(const fs::path& directory, const std::string& prefix, const Image& weights) {
   const std::size_t count = static_cast<std::size_t>(weights.width) * static_cast<std::size_t>(weights.height);
   for (int file = 0; file < weight_files(weights.channels); ++file) {
     ExrImage exr{weights.width, weights.height, {}};
@@ -84,21 +86,22 @@ Image read_map(const fs::path& path, const Model& model, const std::vector<std::
   return map;
 }
 
-void read_cluster_map(const fs::path& path, Model& model) {
+std::vector<std::int16_t> read_cluster_map(const fs::path& path, const Model& model, std::size_t materials) {
   const Image map = read_map(path, model, {"Y"}, 0.0f);
-  model.material.resize(map.data.size());
+  std::vector<std::int16_t> result(map.data.size());
   for (std::size_t t = 0; t < map.data.size(); ++t) {
     const float value = map.data[t];
     const bool none = value == kNoMaterialOnDisk;
-    if (!none && (value != std::floor(value) || value >= static_cast<float>(model.materials.size()))) {
+    if (!none && (value != std::floor(value) || value >= static_cast<float>(materials))) {
       throw BadInput(texel_name(path, model, t), "material " + std::to_string(value),
-                     "65535 or a material below " + std::to_string(model.materials.size()));
+                     "65535 or a material below " + std::to_string(materials));
     }
-    model.material[t] = static_cast<std::int16_t>(none ? Model::kNoMaterial : static_cast<int>(value));
+    result[t] = static_cast<std::int16_t>(none ? Model::kNoMaterial : static_cast<int>(value));
   }
+  return result;
 }
 
-Image read_weights(const fs::path& directory, const char* prefix, int basis_size, const Model& model) {
+Image read_weights(const fs::path& directory, const std::string& prefix, int basis_size, const Model& model) {
   Image weights(model.width, model.height, basis_size);
   for (int file = 0; file < weight_files(basis_size); ++file) {
     const Image four = read_map(directory / weights_file(prefix, file), model, kWeightPlanes, 0.0f);
@@ -125,34 +128,67 @@ void read_normals(const fs::path& path, Model& model) {
   }
 }
 
+void add_layer(const std::string& prefix, const LayerShape& layer, std::vector<AtlasMap>& maps) {
+  maps.push_back({prefix + "cluster.exr", {"Y"}});
+  for (const char* weights : {kWeights, kProjectionWeights}) {
+    if (weights == kProjectionWeights && !layer.principal_functions) continue;
+    for (int file = 0; file < weight_files(layer.basis_size); ++file) {
+      maps.push_back({weights_file(prefix + weights, file), kWeightPlanes});
+    }
+  }
+}
+
+void write_layer(const fs::path& directory, const std::string& prefix, const Model& model, const std::vector<std::int16_t>& material,
+                 const Image& weights, const Image& projection_weights) {
+  write_cluster_map(directory / (prefix + "cluster.exr"), model, material);
+  write_weights(directory, prefix + kWeights, weights);
+  if (projection_weights.channels > 0) write_weights(directory, prefix + kProjectionWeights, projection_weights);
+}
+
+void read_layer(const fs::path& directory, const std::string& prefix, const LayerShape& shape, const Model& model, ReflectanceLayer& layer) {
+  layer.material = read_cluster_map(directory / (prefix + "cluster.exr"), model, layer.materials.size());
+  layer.weights = read_weights(directory, prefix + kWeights, shape.basis_size, model);
+  if (shape.principal_functions) {
+    layer.projection_weights = read_weights(directory, prefix + kProjectionWeights, shape.basis_size, model);
+  }
+}
+
 }  // namespace
 
-std::vector<AtlasMap> atlas_maps(int basis_size, bool principal_functions) {
-  std::vector<AtlasMap> maps{
-      {"cluster.exr", {"Y"}}, {"normal.exr", {"R", "G", "B"}}, {"uncertainty.exr", {"Y"}}, {"samples.exr", {"Y"}}};
-  for (const char* prefix : {kWeights, kProjectionWeights}) {
-    if (prefix == kProjectionWeights && !principal_functions) continue;
-    for (int file = 0; file < weight_files(basis_size); ++file) maps.push_back({weights_file(prefix, file), kWeightPlanes});
+std::vector<AtlasMap> atlas_maps(const LayerShape& layer, const std::optional<LayerShape>& before_normals) {
+  std::vector<AtlasMap> maps{{"normal.exr", {"R", "G", "B"}}, {"uncertainty.exr", {"Y"}}, {"samples.exr", {"Y"}}};
+  add_layer("", layer, maps);
+  if (before_normals) {
+    add_layer(kBeforeNormals, *before_normals, maps);
+    maps.push_back({"normal_sigma.exr", {"Y"}});
   }
   return maps;
 }
 
 void write_atlas_maps(const fs::path& directory, const Model& model) {
-  write_cluster_map(directory / "cluster.exr", model);
-  write_weights(directory, kWeights, model.weights);
-  if (has_principal_functions(model)) write_weights(directory, kProjectionWeights, model.projection_weights);
+  write_layer(directory, "", model, model.material, model.weights, model.projection_weights);
   write_exr_colour(directory / "normal.exr", model.normal);
   write_exr_colour(directory / "uncertainty.exr", model.uncertainty);
   write_exr_colour(directory / "samples.exr", model.samples);
+  if (!has_normals(model)) return;
+  const ReflectanceLayer& before = *model.before_normals;
+  write_layer(directory, kBeforeNormals, model, before.material, before.weights, before.projection_weights);
+  write_exr_colour(directory / "normal_sigma.exr", model.normal_sigma);
 }
 
-void read_atlas_maps(const fs::path& directory, int basis_size, bool principal_functions, Model& model) {
-  read_cluster_map(directory / "cluster.exr", model);
-  model.weights = read_weights(directory, kWeights, basis_size, model);
-  if (principal_functions) model.projection_weights = read_weights(directory, kProjectionWeights, basis_size, model);
+void read_atlas_maps(const fs::path& directory, const LayerShape& layer, const std::optional<LayerShape>& before_normals, Model& model) {
+  ReflectanceLayer last{std::move(model.materials), {}, {}, {}};
+  read_layer(directory, "", layer, model, last);
+  model.materials = std::move(last.materials);
+  model.material = std::move(last.material);
+  model.weights = std::move(last.weights);
+  model.projection_weights = std::move(last.projection_weights);
   read_normals(directory / "normal.exr", model);
   model.uncertainty = read_map(directory / "uncertainty.exr", model, {"Y"}, 0.0f);
   model.samples = read_map(directory / "samples.exr", model, {"Y"}, 0.0f);
+  if (!before_normals) return;
+  read_layer(directory, kBeforeNormals, *before_normals, model, *model.before_normals);
+  model.normal_sigma = read_map(directory / "normal_sigma.exr", model, {"Y"}, 0.0f);
 }
 
 }  // namespace lumitexel

@@ -4,11 +4,14 @@
 //   weights_0.exr, …  R,G,B,A: weights 4k to 4k+3 of the basis of the texel's material; zero past the last
 //   projection_weights_0.exr, …  the same before principal function analysis, if that ran
 //   normal.exr        R,G,B: unit, in world; zero where there is none
+//   before_normals_cluster.exr, before_normals_weights_0.exr, …  the stages before normals were fitted, if they were
+//   normal_sigma.exr  Y: one sigma of the fitted normal per tangent axis, radians, if normals were fitted
 //   uncertainty.exr   Y: one sigma of the texel's reflectance, relative
 //   samples.exr       Y: how many samples the texel was fitted to
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,13 +24,20 @@ struct AtlasMap {
   std::vector<std::string> channels;
 };
 
-// What a model with this largest basis consists of.
-std::vector<AtlasMap> atlas_maps(int basis_size, bool principal_functions);
+// How large the bases of a layer's materials are at most, and whether it remembers them before principal function analysis.
+struct LayerShape {
+  int basis_size = 0;
+  bool principal_functions = false;
+};
+
+// What a model of these layers consists of. before_normals: nothing where normals were not fitted.
+std::vector<AtlasMap> atlas_maps(const LayerShape& layer, const std::optional<LayerShape>& before_normals);
 
 void write_atlas_maps(const std::filesystem::path& directory, const Model& model);  // throws Error
 
-// Fills the maps of `model`, whose size and materials are known. Throws BadInput naming the file and the texel for a
+// Fills the maps of `model`, whose size and materials are known, those of before_normals too if it is there. Throws BadInput naming the file and the texel for a
 // map that is missing, of another size, not finite, negative (all but normals), or a material or normal that cannot be.
-void read_atlas_maps(const std::filesystem::path& directory, int basis_size, bool principal_functions, Model& model);
+void read_atlas_maps(const std::filesystem::path& directory, const LayerShape& layer, const std::optional<LayerShape>& before_normals,
+                     Model& model);
 
 }  // namespace lumitexel

@@ -156,17 +156,33 @@ std::vector<Brdf> brdfs_from(const Field& field, int channels) {
   return brdfs;
 }
 
+Json to_json(const std::vector<ModelMaterial>& materials) {
+  Json list = Json::array();
+  for (const ModelMaterial& material : materials) {
+    Json entry = {{"brdf", to_json(material.brdf)}, {"basis", to_json(material.basis)}};
+    if (!material.projection_basis.empty()) entry["projection_basis"] = to_json(material.projection_basis);
+    list.push_back(entry);
+  }
+  return list;
+}
+
+std::vector<ModelMaterial> materials_from(const Field& field, int channels) {
+  std::vector<ModelMaterial> materials;
+  for (const Field& entry : field.elements()) {
+    ModelMaterial material{brdf_from(entry["brdf"], channels), brdfs_from(entry["basis"], channels), {}};
+    if (entry.has("projection_basis")) material.projection_basis = brdfs_from(entry["projection_basis"], channels);
+    materials.push_back(std::move(material));
+  }
+  return materials;
+}
+
 }  // namespace
 
 std::string encode_basis(const Model& model) {
-  Json materials = Json::array();
-  for (const ModelMaterial& material : model.materials) {
-    Json entry = {{"brdf", to_json(material.brdf)}, {"basis", to_json(material.basis)}};
-    if (!material.projection_basis.empty()) entry["projection_basis"] = to_json(material.projection_basis);
-    materials.push_back(entry);
-  }
-  const Json document = {
-      {"channels", colour_channel_names(model.channels)}, {"single", to_json(model.single)}, {"materials", materials}};
+  Json document = {{"channels", colour_channel_names(model.channels)},
+                   {"single", to_json(model.single)},
+                   {"materials", to_json(model.materials)}};
+  if (has_normals(model)) document["before_normals"] = to_json(model.before_normals->materials);
   return document.dump(1) + "\n";
 }
 
@@ -177,11 +193,8 @@ BasisTable parse_basis(const std::string& text, int channels, const std::string&
   root["channels"].elements(channels);
   BasisTable table;
   table.single = brdf_from(root["single"], channels);
-  for (const Field& entry : root["materials"].elements()) {
-    ModelMaterial material{brdf_from(entry["brdf"], channels), brdfs_from(entry["basis"], channels), {}};
-    if (entry.has("projection_basis")) material.projection_basis = brdfs_from(entry["projection_basis"], channels);
-    table.materials.push_back(std::move(material));
-  }
+  table.materials = materials_from(root["materials"], channels);
+  if (root.has("before_normals")) table.before_normals = materials_from(root["before_normals"], channels);
   return table;
 }
 

@@ -1,6 +1,7 @@
 // basis.json: the model's BRDFs as a person reads them, and without loss.
 //
-//   {"channels": ["R","G","B"], "single": BRDF, "materials": [{"brdf": BRDF, "basis": [BRDF, …]}, …]}
+//   {"channels": ["R","G","B"], "single": BRDF, "materials": [{"brdf": BRDF, "basis": [BRDF, …]}, …],
+//    "before_normals": [the same of the stages before normals were fitted, if they were]}
 //   BRDF = {"family", "diffuse": [kd per channel, 1/sr], "lobes": [[LOBE per channel], …]}
 //   LOBE of "lafortune" = {"peak": A (1/sr), "phi_rad", "exponent": N, "log_peak": ln A, "log_exponent": ln N}
 //   LOBE of "ggx" = {"f0", "alpha", "log_f0", "log_alpha"}, of "ward" = {"albedo", "alpha", "log_albedo", "log_alpha"}
@@ -11,6 +12,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,7 @@ namespace lumitexel {
 struct BasisTable {
   Brdf single;
   std::vector<ModelMaterial> materials;
+  std::optional<std::vector<ModelMaterial>> before_normals{};  // the stages before normals were fitted, if they were
 };
 
 std::string encode_basis(const Model& model);

@@ -23,12 +23,12 @@ void require_finite(const View& view, const Image& prediction) {
   }
 }
 
-SumsByStage compare_view(const ViewRenderer& renderer, const View& view, int channels, FitStage last) {
-  const RadianceImage photograph = read_photograph(view, channels);
+SumsByStage compare_view(const Model& model, const ViewRenderer& renderer, const View& view) {
+  const RadianceImage photograph = read_photograph(view, model.channels);
   SumsByStage sums;
   std::vector<std::uint8_t> counted;
   for (const FitStage stage : kFitStages) {
-    if (stage > last) break;
+    if (!holds_stage(model, stage)) continue;
     const RenderedView rendered = renderer.render(view, {stage, 1});
     require_finite(view, rendered.radiance);
     if (counted.empty()) counted = object_pixels(photograph, rendered.hit);
@@ -37,21 +37,15 @@ SumsByStage compare_view(const ViewRenderer& renderer, const View& view, int cha
   return sums;
 }
 
-ErrorByStage errors(const SumsByStage& sums, FitStage last) {
+ErrorByStage errors(const Model& model, const SumsByStage& sums) {
   ErrorByStage result;
   for (const FitStage stage : kFitStages) {
-    if (stage <= last) result[index(stage)] = sums[index(stage)].error();
+    if (holds_stage(model, stage)) result[index(stage)] = sums[index(stage)].error();
   }
   return result;
 }
 
 }  // namespace
-
-FitStage last_stage(const Model& model) {
-  if (model.materials.empty()) return FitStage::Single;
-  if (model.weights.channels == 0) return FitStage::Cluster;
-  return has_principal_functions(model) ? FitStage::Pfa : FitStage::Projection;
-}
 
 RadianceImage read_photograph(const View& view, int channels) {
   RadianceImage photograph = read_radiance_image(view.photograph);
@@ -89,15 +83,15 @@ Evaluation evaluate_model(const Model& model, const CalibratedSession& session, 
   SumsByStage fit, heldout;
   progress.begin("compare with photographs", static_cast<std::int64_t>(session.views.size()), "views");
   for (const View& view : session.views) {
-    const SumsByStage sums = compare_view(renderer, view, model.channels, evaluation.last_stage);
+    const SumsByStage sums = compare_view(model, renderer, view);
     SumsByStage& pool = view.heldout ? heldout : fit;
     for (std::size_t stage = 0; stage < sums.size(); ++stage) pool[stage].add(sums[stage]);
     const ErrorSums& last = sums[index(evaluation.last_stage)];
     evaluation.views.push_back({view.name, view.heldout, last.values() / model.channels, last.error()});
     progress.update(static_cast<std::int64_t>(evaluation.views.size()));
   }
-  evaluation.fit = errors(fit, evaluation.last_stage);
-  evaluation.heldout = errors(heldout, evaluation.last_stage);
+  evaluation.fit = errors(model, fit);
+  evaluation.heldout = errors(model, heldout);
   return evaluation;
 }
 

@@ -36,9 +36,6 @@ struct Evaluation {
   std::string provenance_json;  // the model's: what the fit itself found on its samples
 };
 
-// The last stage of the chain that this model holds.
-FitStage last_stage(const Model& model);
-
 // The pixels that count, one entry a pixel; `hit` as in RenderedView.
 std::vector<std::uint8_t> object_pixels(const RadianceImage& photograph, const std::vector<std::uint8_t>& hit);
 

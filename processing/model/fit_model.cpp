@@ -14,24 +14,31 @@
 #include "processing/model/fill_atlas.h"
 #include "processing/model/observe.h"
 #include "processing/model/provenance.h"
+#include "processing/normals/fit_normals.h"
 #include "processing/surface/best_view.h"
 #include "processing/surface/gather_lumitexels.h"
 
 namespace lumitexel {
 namespace {
 
-// The error model on this session's own scale, so that a dark object is not drowned in its floor.
-ErrorModel error_model(const Observations& observations, const FitOptions& options) {
+// The session's reflectances in the middle, 1/sr.
+double median_reflectance(const Observations& observations) {
   std::vector<float> values;
   for (const Observation& sample : observations.samples) {
     values.insert(values.end(), sample.reflectance.begin(), sample.reflectance.begin() + observations.channels);
   }
-  if (values.empty()) return {};
+  if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
+  return static_cast<double>(*middle);
+}
+
+// The error model on this session's own scale, so that a dark object is not drowned in its floor.
+ErrorModel error_model(const Observations& observations, const FitOptions& options) {
+  if (observations.samples.empty()) return {};
   ErrorModel error;
   error.relative = options.relative_error;
-  error.floor = std::max(1e-6, options.error_floor_share * static_cast<double>(*middle));
+  error.floor = std::max(1e-6, options.error_floor_share * median_reflectance(observations));
   return error;
 }
 
@@ -159,6 +166,78 @@ std::vector<std::uint32_t> texels_of(const LumitexelSet& lumitexels) {
   return texels;
 }
 
+// What the chain from samples to weights leaves, beside the materials in the model.
+struct Reflectance {
+  Clustering clustering;
+  std::vector<TexelWeights> weights, projection;  // projection: before principal function analysis, if that ran
+};
+
+struct FitInputs {
+  const Atlas& atlas;
+  const LumitexelSet& lumitexels;
+  const Observations& observations;
+  const FitOptions& options;
+  const ErrorModel& error;
+};
+
+// Fills model.materials and model.single. `pass` goes into the names of the stages.
+Reflectance fit_reflectance(const FitInputs& inputs, const std::string& pass, Model& model, FitSummary& summary, StageTimer& timer,
+                            Progress& progress) {
+  const auto& [atlas, lumitexels, observations, options, error] = inputs;
+  Reflectance result;
+  model.materials.clear();
+  summary.prior.clear();
+  summary.texels_by_material.clear();
+  timer.begin("materials" + pass);
+  result.clustering = learn_materials(observations, options, error, progress);
+  summary.errors = result.clustering.errors;
+  set_materials(result.clustering, atlas, lumitexels, observations, model);
+  timer.begin("projection" + pass);
+  result.weights = project_all(observations, result.clustering, model, options, summary, progress);
+  return result;
+}
+
+void seek_principal_functions(const FitInputs& inputs, Reflectance& reflectance, Model& model, FitSummary& summary, StageTimer& timer,
+                              Progress& progress) {
+  timer.begin("principal functions");
+  for (ModelMaterial& material : model.materials) material.projection_basis = material.basis;
+  move_bases(inputs.observations, reflectance.clustering, inputs.options, summary, model, progress);
+  summary.prior.clear();
+  summary.texels_by_material.clear();
+  reflectance.projection = std::move(reflectance.weights);
+  reflectance.weights = project_all(inputs.observations, reflectance.clustering, model, inputs.options, summary, progress);
+}
+
+FittedNormals normals_of(const CalibratedSession& session, const FitInputs& inputs, const Reflectance& reflectance, const Model& model) {
+  const DirectedLumitexels lumitexels(session, inputs.lumitexels);
+  std::vector<std::vector<Brdf>> bases;
+  for (const ModelMaterial& material : model.materials) bases.push_back(material.basis);
+  return fit_normals(lumitexels, lumitexel_neighbours(lumitexels, inputs.atlas.width), bases, reflectance.clustering.label,
+                     median_reflectance(inputs.observations), inputs.options.normal_fit);
+}
+
+void turn(const std::vector<Eigen::Vector3d>& normals, LumitexelSet& lumitexels) {
+  std::size_t i = 0;
+  for (LumitexelTile& tile : lumitexels.tiles) {
+    for (Eigen::Vector3d& normal : tile.normal) normal = normals[i++];
+  }
+}
+
+void set_normal_sigma(const LumitexelSet& lumitexels, const std::vector<float>& sigma_rad, double coarse_sigma_rad, Model& model) {
+  model.normal_sigma = Image(model.width, model.height, 1, static_cast<float>(coarse_sigma_rad));
+  std::size_t i = 0;
+  for (const LumitexelTile& tile : lumitexels.tiles) {
+    for (const std::uint32_t texel : tile.texel) model.normal_sigma.data[texel] = sigma_rad[i++];
+  }
+}
+
+// What stands in the model so far becomes its stages before normals.
+void keep_before_normals(Model& model) {
+  model.before_normals = ReflectanceLayer{model.materials, std::move(model.material), std::move(model.weights),
+                                          std::move(model.projection_weights)};
+  model.projection_weights = Image();
+}
+
 }  // namespace
 
 FittedModel fit_model(const CalibratedSession& session, const FitOptions& options, StageTimer timer, Progress& progress) {
@@ -175,42 +254,47 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
   const Atlas atlas = make_atlas(session, best_view);
 
   timer.begin("lumitexels");
-  const GatheredLumitexels gathered = gather_lumitexels(session, atlas, scene, progress);
-  const Observations observations = observe(session, gathered.set);
+  GatheredLumitexels gathered = gather_lumitexels(session, atlas, scene, progress);
+  Observations observations = observe(session, gathered.set);
   summary.lumitexels = observations.lumitexels();
   summary.samples = observations.samples.size();
   summary.rejected = gathered.rejected;
   summary.unusable = observations.rejected;
   for (std::size_t i = 0; i < observations.lumitexels(); ++i) summary.starved += observations.of(i).empty();
 
-  timer.begin("materials");
   const ErrorModel error = error_model(observations, options);
   summary.error = error;
-  const Clustering clustering = learn_materials(observations, options, error, progress);
-  summary.errors = clustering.errors;
-  set_materials(clustering, atlas, gathered.set, observations, model);
-
-  timer.begin("projection");
-  auto weights = project_all(observations, clustering, model, options, summary, progress);
-  summary.projection = stage_error(model, FitStage::Projection, observations, clustering.label, weights);
-  std::vector<TexelWeights> projection;
+  const FitInputs inputs{atlas, gathered.set, observations, options, error};
+  Reflectance reflectance = fit_reflectance(inputs, "", model, summary, timer, progress);
+  const auto error_at = [&](FitStage stage) {
+    return stage_error(model, stage, observations, reflectance.clustering.label, reflectance.weights);
+  };
+  summary.single = error_at(FitStage::Single);
+  summary.cluster = error_at(FitStage::Cluster);
+  summary.projection = error_at(FitStage::Projection);
   if (options.principal_functions) {
-    timer.begin("principal functions");
-    for (ModelMaterial& material : model.materials) material.projection_basis = material.basis;
-    move_bases(observations, clustering, options, summary, model, progress);
-    summary.prior.clear();
-    summary.texels_by_material.clear();
-    projection = std::move(weights);
-    weights = project_all(observations, clustering, model, options, summary, progress);
-    summary.pfa = stage_error(model, FitStage::Pfa, observations, clustering.label, weights);
+    seek_principal_functions(inputs, reflectance, model, summary, timer, progress);
+    summary.pfa = error_at(FitStage::Pfa);
+  }
+  fill_atlas(atlas, gathered.set, reflectance.clustering.label, reflectance.weights, reflectance.projection, model);
+  if (options.normals) {
+    timer.begin("normals");
+    const FittedNormals normals = normals_of(session, inputs, reflectance, model);
+    turn(normals.normal, gathered.set);
+    observations = observe(session, gathered.set);
+    keep_before_normals(model);
+    const Brdf single = model.single;
+    summary.texels_before_normals = summary.texels_by_material;
+    reflectance = fit_reflectance(inputs, " on fitted normals", model, summary, timer, progress);
+    model.single = single;
+    summary.normal = error_at(FitStage::Normal);
+    fill_atlas(atlas, gathered.set, reflectance.clustering.label, reflectance.weights, {}, model);
+    set_normal_sigma(gathered.set, normals.sigma_rad, options.normal_fit.prior.coarse_sigma_rad, model);
   }
 
   timer.begin("model");
-  summary.single = stage_error(model, FitStage::Single, observations, clustering.label, weights);
-  summary.cluster = stage_error(model, FitStage::Cluster, observations, clustering.label, weights);
-  fill_atlas(atlas, gathered.set, clustering.label, weights, projection, model);
-  summary.outliers = find_outliers(model, observations, outlier_errors(clustering, error, options), clustering.label, weights,
-                                    session.views.size());
+  summary.outliers = find_outliers(model, observations, outlier_errors(reflectance.clustering, error, options),
+                                   reflectance.clustering.label, reflectance.weights, session.views.size());
   model.outliers_csv = outliers_csv(summary.outliers, names_of(session.views), texels_of(gathered.set), atlas.width);
   timer.end();
   summary.stages = timer.stages();

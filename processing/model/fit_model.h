@@ -21,10 +21,11 @@ struct FitSummary {
   RejectedSamples unusable;          // gathered, but not finite or below the surface
   ErrorModel error;                  // that the fit started from, or was given
   ErrorSource errors = ErrorSource::Given;  // whose error models the materials have, never Auto
-  std::vector<std::size_t> texels_by_material;
-  std::vector<PriorChoice> prior;    // per material
+  std::vector<std::size_t> texels_by_material, texels_before_normals;  // the second only where normals were fitted
+  std::vector<PriorChoice> prior;    // per material, of the last stage
   StageError single, cluster, projection;
   std::optional<StageError> pfa;     // if principal functions were asked for
+  std::optional<StageError> normal;  // if normals were fitted
   Outliers outliers;                 // under the finished model
   std::vector<StageCost> stages;
 };

@@ -24,7 +24,7 @@ FitOptions FitOptions::preset(const std::string& quality) {
 
 FitOptions as_published(FitOptions options) {
   options.method = FitMethod::Paper;
-  options.shared_lobe_shape = false;
+  options.shared_lobe_shape = options.normals = false;
   options.plain_projection = options.principal_functions = true;
   return options;
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "processing/brdf/cluster_materials.h"
+#include "processing/normals/fit_normals.h"
 
 namespace lumitexel {
 
@@ -20,6 +21,8 @@ struct FitOptions {
   BrdfFamily family = BrdfFamily::Lafortune;
   int most_lobes = 1;                       // each must be asked for by the samples; with the paper's method it is the number
   bool principal_functions = false;         // tried for each material, and kept where left-out lumitexels are predicted better
+  bool normals = true;                      // fit normals finer than the mesh's (section 9 of the paper), then everything once more
+  NormalFitOptions normal_fit;
   ErrorSource errors = ErrorSource::Auto;
   double intensity_weight = 0.3;            // s of the paper's eq. 6; only the paper's method looks at it
   std::size_t learning_lumitexels = 10000;  // that the materials are learnt on

@@ -24,20 +24,50 @@ constexpr int kVersion = 1;
 constexpr int kLargestAtlas = 1 << 15;  // a side of more than this is a damaged number, not an atlas
 // ---- writing
 
+LayerShape shape_of(const Image& weights, const Image& projection_weights) { return {weights.channels, projection_weights.channels > 0}; }
+
+std::optional<LayerShape> shape_before_normals(const Model& model) {
+  if (!has_normals(model)) return {};
+  return shape_of(model.before_normals->weights, model.before_normals->projection_weights);
+}
+
+Json to_json(const LayerShape& shape, std::size_t materials) {
+  return {{"materials", materials}, {"basis_size", shape.basis_size}, {"principal_functions", shape.principal_functions}};
+}
+
 Json model_json(const Model& model) {
   const Json provenance = Json::parse(model.provenance_json, nullptr, false);
   if (!provenance.is_object()) throw Error("model: its provenance is not a JSON object");
   Json maps = Json::object();
-  for (const AtlasMap& map : atlas_maps(model.weights.channels, has_principal_functions(model))) maps[map.file] = map.channels;
-  return {{"format", kFormat},
-          {"version", kVersion},
-          {"channels", colour_channel_names(model.channels)},
-          {"atlas", {{"width", model.width}, {"height", model.height}}},
-          {"materials", model.materials.size()},
-          {"basis_size", model.weights.channels},
-          {"principal_functions", has_principal_functions(model)},
-          {"maps", maps},
-          {"provenance", provenance}};
+  const LayerShape shape = shape_of(model.weights, model.projection_weights);
+  const std::optional<LayerShape> before = shape_before_normals(model);
+  for (const AtlasMap& map : atlas_maps(shape, before)) maps[map.file] = map.channels;
+  Json document = {{"format", kFormat},
+                   {"version", kVersion},
+                   {"channels", colour_channel_names(model.channels)},
+                   {"atlas", {{"width", model.width}, {"height", model.height}}}};
+  document.update(to_json(shape, model.materials.size()));
+  if (before) document["before_normals"] = to_json(*before, model.before_normals->materials.size());
+  document["maps"] = maps;
+  document["provenance"] = provenance;
+  return document;
+}
+
+bool layer_fits(const Model& model, const std::vector<ModelMaterial>& materials, const std::vector<std::int16_t>& material,
+                const Image& weights, const Image& projection_weights) {
+  std::size_t basis_size = 0;
+  bool bases_fit = true;
+  const bool principal = projection_weights.channels > 0;
+  for (const ModelMaterial& entry : materials) {
+    basis_size = std::max(basis_size, entry.basis.size());
+    bases_fit = bases_fit && entry.projection_basis.size() == (principal ? entry.basis.size() : 0);
+  }
+  const std::size_t texels = static_cast<std::size_t>(model.width) * static_cast<std::size_t>(model.height);
+  const auto fits = [&](const Image& map) {
+    return map.width == model.width && map.height == model.height && map.channels == static_cast<int>(basis_size) &&
+           map.data.size() == texels * basis_size;
+  };
+  return bases_fit && material.size() == texels && fits(weights) && (!principal || fits(projection_weights));
 }
 
 void require_consistent(const Model& model) {
@@ -45,19 +75,15 @@ void require_consistent(const Model& model) {
     return map.width == model.width && map.height == model.height && map.channels == channels &&
            map.data.size() == model.material.size() * static_cast<std::size_t>(channels);
   };
-  std::size_t basis_size = 0;
-  bool bases_fit = true;
-  for (const ModelMaterial& material : model.materials) {
-    basis_size = std::max(basis_size, material.basis.size());
-    bases_fit = bases_fit && material.projection_basis.size() == (has_principal_functions(model) ? material.basis.size() : 0);
+  bool consistent = layer_fits(model, model.materials, model.material, model.weights, model.projection_weights) &&
+                    model.mesh.texcoords.size() == model.mesh.positions.size() && fits(model.normal, 3) && fits(model.uncertainty, 1) &&
+                    fits(model.samples, 1);
+  if (has_normals(model)) {
+    const ReflectanceLayer& before = *model.before_normals;
+    consistent = consistent && fits(model.normal_sigma, 1) &&
+                 layer_fits(model, before.materials, before.material, before.weights, before.projection_weights);
   }
-  const std::size_t texels = static_cast<std::size_t>(model.width) * static_cast<std::size_t>(model.height);
-  if (!bases_fit || model.material.size() != texels || model.mesh.texcoords.size() != model.mesh.positions.size() ||
-      !fits(model.weights, static_cast<int>(basis_size)) ||
-      (has_principal_functions(model) && !fits(model.projection_weights, static_cast<int>(basis_size))) || !fits(model.normal, 3) || !fits(model.uncertainty, 1) ||
-      !fits(model.samples, 1)) {
-    throw Error("model: maps, mesh and basis do not fit together");
-  }
+  if (!consistent) throw Error("model: maps, mesh and basis do not fit together");
 }
 
 void write_files(const fs::path& directory, const Model& model) {
@@ -109,10 +135,15 @@ constexpr ProvenanceType kProvenanceTypes[] = {
     {"options", [](const Json& value) { return value.is_object(); }, "an object"},
 };
 
+struct LayerHeader {
+  int materials = 0;
+  LayerShape shape;
+};
+
 struct ModelHeader {
   Model model;  // channels, width, height, provenance
-  int materials = 0, basis_size = 0;
-  bool principal_functions = false;
+  LayerHeader layer;
+  std::optional<LayerHeader> before_normals;
 };
 
 int int_field(const Json& parent, const char* key, int minimum, int maximum, const std::string& where) {
@@ -124,6 +155,16 @@ int int_field(const Json& parent, const char* key, int minimum, int maximum, con
   if (!fits)
     throw BadInput(name, value.dump(), "an integer from " + std::to_string(minimum) + " to " + std::to_string(maximum));
   return value.get<int>();
+}
+
+LayerHeader parse_layer(const Json& document, const std::string& where) {
+  LayerHeader layer;
+  layer.materials = int_field(document, "materials", 0, std::numeric_limits<std::int16_t>::max(), where);
+  layer.shape.basis_size = int_field(document, "basis_size", 0, 1000, where);
+  const Json principal = document.value("principal_functions", Json(false));
+  if (!principal.is_boolean()) throw BadInput(where + ": principal_functions", principal.dump(), "true or false");
+  layer.shape.principal_functions = principal.get<bool>();
+  return layer;
 }
 
 ModelHeader parse_header(const std::string& text, const std::string& where) {
@@ -140,11 +181,10 @@ ModelHeader parse_header(const std::string& text, const std::string& where) {
   const Json atlas = document.value("atlas", Json());
   header.model.width = int_field(atlas, "width", 1, kLargestAtlas, where + ": atlas");
   header.model.height = int_field(atlas, "height", 1, kLargestAtlas, where + ": atlas");
-  header.materials = int_field(document, "materials", 0, std::numeric_limits<std::int16_t>::max(), where);
-  header.basis_size = int_field(document, "basis_size", 0, 1000, where);
-  const Json principal = document.value("principal_functions", Json(false));
-  if (!principal.is_boolean()) throw BadInput(where + ": principal_functions", principal.dump(), "true or false");
-  header.principal_functions = principal.get<bool>();
+  header.layer = parse_layer(document, where);
+  if (document.contains("before_normals")) {
+    header.before_normals = parse_layer(document.at("before_normals"), where + ": before_normals");
+  }
   const Json provenance = document.value("provenance", Json());
   if (!provenance.is_object()) throw BadInput(where + ": provenance", provenance.dump(), "an object");
   for (const auto& [key, is_right, expected] : kProvenanceTypes) {
@@ -156,26 +196,35 @@ ModelHeader parse_header(const std::string& text, const std::string& where) {
   return header;
 }
 
-void read_basis(const fs::path& path, const ModelHeader& header, Model& model) {
-  BasisTable table = parse_basis(read_whole_file(path), model.channels, path.string());
+void check_basis(const std::vector<ModelMaterial>& materials, const LayerHeader& layer, const std::string& where) {
   std::size_t basis_size = 0;
-  for (const ModelMaterial& material : table.materials) {
+  for (const ModelMaterial& material : materials) {
     basis_size = std::max(basis_size, material.basis.size());
-    const std::size_t before = header.principal_functions ? material.basis.size() : 0;
+    const std::size_t before = layer.shape.principal_functions ? material.basis.size() : 0;
     if (material.projection_basis.size() == before) continue;
-    throw BadInput(path.string() + ".materials", std::to_string(material.projection_basis.size()) + " in a projection_basis",
+    throw BadInput(where, std::to_string(material.projection_basis.size()) + " in a projection_basis",
                    std::to_string(before) + " as model.json says");
   }
-  if (table.materials.size() != static_cast<std::size_t>(header.materials)) {
-    throw BadInput(path.string() + ".materials", std::to_string(table.materials.size()) + " entries",
-                   std::to_string(header.materials) + " as model.json says");
+  if (materials.size() != static_cast<std::size_t>(layer.materials)) {
+    throw BadInput(where, std::to_string(materials.size()) + " entries", std::to_string(layer.materials) + " as model.json says");
   }
-  if (basis_size != static_cast<std::size_t>(header.basis_size)) {
-    throw BadInput(path.string() + ".materials", "a largest basis of " + std::to_string(basis_size),
-                   std::to_string(header.basis_size) + " as model.json says");
+  if (basis_size != static_cast<std::size_t>(layer.shape.basis_size)) {
+    throw BadInput(where, "a largest basis of " + std::to_string(basis_size),
+                   std::to_string(layer.shape.basis_size) + " as model.json says");
+  }
+}
+
+void read_basis(const fs::path& path, const ModelHeader& header, Model& model) {
+  BasisTable table = parse_basis(read_whole_file(path), model.channels, path.string());
+  check_basis(table.materials, header.layer, path.string() + ".materials");
+  if (table.before_normals.has_value() != header.before_normals.has_value()) {
+    throw BadInput(path.string() + ".before_normals", table.before_normals ? "there" : "missing", "as model.json says");
   }
   model.single = std::move(table.single);
   model.materials = std::move(table.materials);
+  if (!header.before_normals) return;
+  check_basis(*table.before_normals, *header.before_normals, path.string() + ".before_normals");
+  model.before_normals = ReflectanceLayer{std::move(*table.before_normals), {}, {}, {}};
 }
 
 }  // namespace
@@ -212,7 +261,9 @@ Model read_model(const fs::path& directory) {
   ModelHeader header = parse_header(read_whole_file(description), description.string());
   Model model = std::move(header.model);
   read_basis(directory / "basis.json", header, model);
-  read_atlas_maps(directory, header.basis_size, header.principal_functions, model);
+  std::optional<LayerShape> before;
+  if (header.before_normals) before = header.before_normals->shape;
+  read_atlas_maps(directory, header.layer.shape, before, model);
   model.mesh = read_mesh(directory / "mesh.ply");
   if (fs::exists(directory / "outliers.csv")) model.outliers_csv = read_whole_file(directory / "outliers.csv");
   if (model.mesh.texcoords.size() != model.mesh.positions.size()) {

@@ -60,7 +60,8 @@ Eigen::Vector3d ModelSurface::start_above(const TexturedPoint& point) const {
   return point.position_in_world + scene_.surface_offset_m() * point.geometric_normal;
 }
 
-Eigen::Vector3d ModelSurface::shading_normal(const TexelShare& texel, const TexturedPoint& point) const {
+Eigen::Vector3d ModelSurface::shading_normal(const TexelShare& texel, const TexturedPoint& point, FitStage stage) const {
+  if (has_normals(model_) && stage < FitStage::Normal) return point.vertex_normal;
   const Eigen::Vector3d normal(model_.normal.at(texel.x, texel.y, 0), model_.normal.at(texel.x, texel.y, 1),
                                model_.normal.at(texel.x, texel.y, 2));
   return normal.isZero() ? point.vertex_normal : normal.normalized();

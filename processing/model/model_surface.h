@@ -37,8 +37,8 @@ class ModelSurface {
   bool sees_sky(const TexturedPoint& point, const Eigen::Vector3d& direction) const;
   // Where a ray starts that leaves the surface: that hair above the triangle.
   Eigen::Vector3d start_above(const TexturedPoint& point) const;
-  // Of the texel; the interpolated vertex normal where the texel has none.
-  Eigen::Vector3d shading_normal(const TexelShare& texel, const TexturedPoint& point) const;
+  // Of the texel; the interpolated vertex normal where the texel has none, and at the stages before normals were fitted.
+  Eigen::Vector3d shading_normal(const TexelShare& texel, const TexturedPoint& point, FitStage stage) const;
 
   const Model& model() const { return model_; }
 

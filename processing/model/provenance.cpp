@@ -66,6 +66,7 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
                        {"family", to_string(options.family)},
                        {"most_lobes", options.most_lobes},
                        {"principal_functions", options.principal_functions},
+                       {"normals", options.normals},
                        {"intensity_weight", options.method == FitMethod::Paper ? json(options.intensity_weight) : json(nullptr)},
                        {"materials", options.materials},
                        {"learning_lumitexels", options.learning_lumitexels},
@@ -96,6 +97,11 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
     object["rms"]["pfa"] = summary.pfa->rms;
     object["rms_by_channel"]["pfa"] = summary.pfa->by_channel;
     object["rms_by_material"]["pfa"] = summary.pfa->by_material;
+  }
+  if (summary.normal) {
+    object["rms"]["normal"] = summary.normal->rms;
+    object["rms_by_channel"]["normal"] = summary.normal->by_channel;
+    object["rms_by_material_on_fitted_normals"] = summary.normal->by_material;
   }
   object["outliers"] = outliers_json(summary.outliers, session);
   object["texels_by_material"] = summary.texels_by_material;

@@ -33,7 +33,7 @@ Radiance shade(const ModelSurface& surface, const TexturedPoint& point, const Ey
   const Model& model = surface.model();
   for (int i = 0; i < point.texel_count; ++i) {
     const TexelShare& texel = point.texels[static_cast<std::size_t>(i)];
-    const LobeGeometry geometry = lobe_geometry(surface.shading_normal(texel, point), wi, wo);
+    const LobeGeometry geometry = lobe_geometry(surface.shading_normal(texel, point, stage), wi, wo);
     if (geometry.cos_i <= 0.0) continue;
     for (int c = 0; c < model.channels; ++c) {
       radiance[static_cast<std::size_t>(c)] +=
@@ -70,7 +70,7 @@ Eigen::Vector3d blended_normal(const ModelSurface& surface, const TexturedPoint&
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int i = 0; i < point.texel_count; ++i) {
     const TexelShare& texel = point.texels[static_cast<std::size_t>(i)];
-    sum += texel.weight * surface.shading_normal(texel, point);
+    sum += texel.weight * surface.shading_normal(texel, point, FitStage::Normal);
   }
   return sum.isZero() ? point.vertex_normal : sum.normalized();
 }

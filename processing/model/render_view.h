@@ -17,7 +17,7 @@
 namespace lumitexel {
 
 struct RenderOptions {
-  FitStage stage = FitStage::Pfa;  // all that the model holds
+  FitStage stage = FitStage::Normal;  // all that the model holds
   // 1: a ray through the pixel's centre. More: the mean over a fixed pattern that is stratified in both directions.
   int samples_per_pixel = 1;
 };

@@ -67,7 +67,7 @@ PathSample PathTracer::trace(const Eigen::Vector3d& origin, Eigen::Vector3d dire
 bool PathTracer::arrive(const TexturedPoint& point, const Eigen::Vector3d& wo, double choice) {
   if (point.texel_count == 0 || !(point.geometric_normal.dot(wo) > 0.0)) return false;
   const TexelShare& texel = drawn_texel(point, choice);
-  return texel_.set(texel.x, texel.y, surface_.shading_normal(texel, point), wo);
+  return texel_.set(texel.x, texel.y, surface_.shading_normal(texel, point, texel_.stage()), wo);
 }
 
 void PathTracer::add_lamps(const TexturedPoint& point) {

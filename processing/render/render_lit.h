@@ -25,7 +25,7 @@ struct RenderLimits {
 };
 
 struct LitOptions {
-  FitStage stage = FitStage::Pfa;  // all that the model holds
+  FitStage stage = FitStage::Normal;  // all that the model holds
   PathOptions path;
   RenderLimits limits;
 };

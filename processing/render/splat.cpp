@@ -27,7 +27,7 @@ std::vector<Splat> lit_splats(const Model& model, const View& view, const std::v
       splats[i].on_screen = project(view, point, points[i], splats[i]);
       const Eigen::Vector3d wo = (eye - point.position_in_world).normalized();
       if (!splats[i].on_screen || !splats[i].faces_camera) continue;
-      if (!texel.set(points[i].x, points[i].y, surface.shading_normal(point.texels[0], point), wo)) continue;
+      if (!texel.set(points[i].x, points[i].y, surface.shading_normal(point.texels[0], point, stage), wo)) continue;
       splats[i].radiance = light_of_lamps(surface, point, texel, lamps);
     }
   });

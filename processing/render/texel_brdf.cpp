@@ -109,7 +109,7 @@ ReflectingBrdf::ReflectingBrdf(const Brdf& whole) : brdf(whole) {
 }
 
 ReflectingModel::ReflectingModel(const Model& model, FitStage stage)
-    : model_(model), single_(stage == FitStage::Single) {
+    : model_(model), stage_(stage), single_(stage == FitStage::Single) {
   const auto prepared = [](const std::vector<Brdf>& basis) {
     return std::vector<ReflectingBrdf>(basis.begin(), basis.end());
   };
@@ -117,19 +117,18 @@ ReflectingModel::ReflectingModel(const Model& model, FitStage stage)
     basis_.push_back(prepared({model.single}));
     return;
   }
-  const bool before = stage == FitStage::Projection && has_principal_functions(model);
-  if (stage != FitStage::Cluster) weights_ = before ? &model.projection_weights : &model.weights;
-  for (const ModelMaterial& material : model.materials) {
-    basis_.push_back(prepared(stage == FitStage::Cluster ? std::vector<Brdf>{material.brdf}
-                              : before                   ? material.projection_basis
-                                                         : material.basis));
+  const LayerAtStage layer = layer_at(model, stage);
+  material_ = &layer.material;
+  if (stage != FitStage::Cluster) weights_ = &layer.weights;
+  for (const ModelMaterial& material : layer.materials) {
+    basis_.push_back(prepared(stage == FitStage::Cluster ? std::vector<Brdf>{material.brdf} : layer.basis_of(material)));
   }
 }
 
 const std::vector<ReflectingBrdf>& ReflectingModel::basis(int x, int y) const {
   if (single_) return basis_.front();
   const auto texel = static_cast<std::size_t>(y) * static_cast<std::size_t>(model_.width) + static_cast<std::size_t>(x);
-  return basis_[static_cast<std::size_t>(model_.material[texel])];
+  return basis_[static_cast<std::size_t>((*material_)[texel])];
 }
 
 double ReflectingModel::weight(int x, int y, int k) const { return weights_ == nullptr ? 1.0 : weights_->at(x, y, k); }

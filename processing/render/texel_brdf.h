@@ -41,11 +41,14 @@ class ReflectingModel {
   ReflectingModel(const Model& model, FitStage stage);  // keeps a reference to the model
 
   const Model& model() const { return model_; }
+  FitStage stage() const { return stage_; }
   const std::vector<ReflectingBrdf>& basis(int x, int y) const;  // of a texel with a material
   double weight(int x, int y, int k) const;
 
  private:
   const Model& model_;
+  FitStage stage_;
+  const std::vector<std::int16_t>* material_ = nullptr;
   std::vector<std::vector<ReflectingBrdf>> basis_;  // per material; one for all at the single stage
   const Image* weights_ = nullptr;                  // none: one BRDF of weight 1
   bool single_ = false;
@@ -55,6 +58,7 @@ class ReflectingModel {
 class TexelReflection {
  public:
   explicit TexelReflection(const ReflectingModel& model) : model_(model) {}
+  FitStage stage() const { return model_.stage(); }
 
   // normal, wo: unit, in world. False where nothing is reflected towards wo: a black texel, or wo below the normal's
   // horizon.

@@ -17,6 +17,7 @@ const char* stage_title(const std::string& stage) {
   if (stage == "cluster") return "one BRDF a material (C-RMS)";
   if (stage == "projection") return "a mixture a texel (P-RMS)";
   if (stage == "pfa") return "of functions moved to fit (F-RMS)";
+  if (stage == "normal") return "on fitted normals (N-RMS)";
   return "";
 }
 

@@ -18,6 +18,7 @@ struct FitSettings {
   int lobes = 1;
   double intensity_weight = 0.3;
   bool separate_lobes = false, plain_projection = false, principal_functions = false;
+  std::string normals;
 };
 
 template <typename Value>
@@ -41,11 +42,16 @@ FitOptions fit_options(const FitSettings& settings) {
   options.principal_functions = settings.principal_functions;
   options.shared_lobe_shape = !settings.separate_lobes;
   options.plain_projection = settings.plain_projection;
+  const std::string normals =
+      settings.normals.empty() ? (options.method == FitMethod::Paper ? "mesh" : "fitted") : settings.normals;
+  options.normals = named_value<bool>("--normals", normals, {{"fitted", true}, {"mesh", false}});
   if (options.method == FitMethod::Paper) {
     if (options.materials == 0) throw BadInput("--materials", "auto with --method paper", "a number: the paper does not choose it");
     if (options.family != BrdfFamily::Lafortune) throw BadInput("--family", settings.family + " with --method paper", "lafortune");
     if (options.errors != ErrorSource::Auto) throw BadInput("--errors", settings.errors + " with --method paper", "no such option");
-    return as_published(options);
+    FitOptions published = as_published(options);
+    published.normals = options.normals;
+    return published;
   }
   return options;
 }
@@ -59,23 +65,31 @@ std::string line(const char* format, Values... values) {
 
 // A row's figure of every stage that ran, in Table II's order.
 template <typename Figure>
-std::string rms_row(const std::string& title, const FitSummary& summary, Figure figure) {
+std::string rms_row(const std::string& title, const FitSummary& summary, bool with_normal, Figure figure) {
   std::string text = line("  %-30s", title.c_str());
   for (const StageError* stage : {&summary.single, &summary.cluster, &summary.projection}) text += line(" %9.5f", figure(*stage));
   if (summary.pfa) text += line(" %9.5f", figure(*summary.pfa));
+  if (with_normal && summary.normal) text += line(" %9.5f", figure(*summary.normal));
   return text + "\n";
 }
 
 std::string rms_table(const FitSummary& summary) {
   std::string text = line("%-32s %9s %9s %9s", "RMS of the samples, 1/sr", "1-RMS", "C-RMS", "P-RMS");
-  text += summary.pfa ? line(" %9s\n", "F-RMS") : "\n";
-  text += rms_row("all", summary, [](const StageError& stage) { return stage.rms; });
+  if (summary.pfa) text += line(" %9s", "F-RMS");
+  if (summary.normal) text += line(" %9s", "N-RMS");
+  text += "\n";
+  text += rms_row("all", summary, true, [](const StageError& stage) { return stage.rms; });
   for (std::size_t c = 0; c < summary.single.by_channel.size(); ++c) {
-    text += rms_row("channel " + std::to_string(c), summary, [c](const StageError& stage) { return stage.by_channel[c]; });
+    text += rms_row("channel " + std::to_string(c), summary, true, [c](const StageError& stage) { return stage.by_channel[c]; });
   }
   for (std::size_t j = 0; j < summary.single.by_material.size(); ++j) {
-    text += rms_row(line("material %-2zu %10zu texels", j, summary.texels_by_material[j]), summary,
+    const std::vector<std::size_t>& texels = summary.normal ? summary.texels_before_normals : summary.texels_by_material;
+    text += rms_row(line("material %-2zu %10zu texels", j, texels[j]), summary, false,
                     [j](const StageError& stage) { return stage.by_material[j]; });
+  }
+  for (std::size_t j = 0; summary.normal && j < summary.normal->by_material.size(); ++j) {
+    const std::string title = line("on fitted normals: material %zu, %zu texels", j, summary.texels_by_material[j]);
+    text += line("  %-60s %9.5f\n", title.c_str(), summary.normal->by_material[j]);
   }
   return text;
 }
@@ -116,9 +130,9 @@ std::string fit_text(const FitSettings& settings, const FitSummary& summary) {
   text += error_line(settings, summary);
   text += rms_table(summary);
   text += outlier_line(summary.outliers);
-  text += "Stage            seconds   peak MB\n";
+  text += "Stage                             seconds   peak MB\n";
   for (const StageCost& stage : summary.stages) {
-    text += line("  %-14s %8.2f %9.0f\n", stage.name.c_str(), stage.seconds, static_cast<double>(stage.peak_bytes) / 1e6);
+    text += line("  %-31s %8.2f %9.0f\n", stage.name.c_str(), stage.seconds, static_cast<double>(stage.peak_bytes) / 1e6);
   }
   return text;
 }
@@ -157,6 +171,9 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
   command->add_option("--lobes", settings->lobes, "Most lobes of a material; each must be asked for by its samples")
       ->check(CLI::Range(0, 3))
       ->capture_default_str();
+  command->add_option("--normals", settings->normals,
+                      "fitted: normals finer than the mesh's, from all photographs, and then everything once more on them; mesh: the "
+                      "mesh's own (default: fitted, with --method paper mesh)");
   command->add_option("--errors", settings->errors,
                       "What a fit takes for noise. given: 30 % of each prediction and of the median; estimated: what each material's "
                       "residuals say, outliers counting less; labels: estimated for telling materials apart, given for fitting "

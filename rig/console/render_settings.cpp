@@ -134,9 +134,9 @@ void add_render_options(CLI::App& command, RenderSettings& settings) {
   add_view_options(command, settings);
   add_light_options(command, settings);
   command.add_option("--stage", settings.stage,
-                     "single (one BRDF for all), cluster (one a material), projection (a mixture a texel) or pfa (of "
+                     "single (one BRDF for all), cluster (one a material), projection (a mixture a texel), pfa (of "
                      "principal functions, if "
-                     "the fit sought them); default: all that the model holds");
+                     "the fit sought them) or normal (on fitted normals); default: all that the model holds");
   command.add_option("--aov", settings.aov, "radiance, normal, position, cluster, samples or sigma")
       ->capture_default_str();
   add_quality_options(command, settings);

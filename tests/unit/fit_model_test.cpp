@@ -49,7 +49,8 @@ TEST(FitModel, ProvenanceSaysWhatWasDone) {
     names.push_back(stage.at("name"));
     EXPECT_GT(stage.at("peak_bytes").get<double>(), 0.0);
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"atlas", "lumitexels", "materials", "projection", "model"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"atlas", "lumitexels", "materials", "projection", "normals", "materials on fitted normals",
+                                             "projection on fitted normals", "model"}));
 }
 
 // The paper's method ends with functions moved to fit; what the texels mixed before stays in the model and can be shown.

@@ -1,0 +1,27 @@
+// The normals of a whole object from its materials: the step of section 9 of the paper, for all lumitexels together.
+#pragma once
+
+#include "processing/brdf/cluster_materials.h"
+#include "processing/normals/smooth_normals.h"
+
+namespace lumitexel {
+
+struct NormalFitOptions {
+  NormalPrior prior;
+  int steps = 6;
+  // Scale of what is left once the normal is right, as a share of the prediction and of the session's median reflectance. Smaller than the
+  // fit of materials has it, which has to make do with the coarse mesh's normals.
+  double relative_error = 0.05, floor_share = 0.05;
+  TexelPrior texel{1.0, 1.0};  // wide: a texel whose normal is free must not be forced to explain its colour by it
+};
+
+struct FittedNormals {
+  std::vector<Eigen::Vector3d> normal;  // of each lumitexel, in world, unit
+  std::vector<float> sigma_rad;         // one sigma per tangent axis
+};
+
+// bases: of each material, as texels mix them. label: material of each lumitexel. median_reflectance: 1/sr.
+FittedNormals fit_normals(const DirectedLumitexels& lumitexels, const Neighbours& neighbours, const std::vector<std::vector<Brdf>>& bases,
+                          const std::vector<int>& label, double median_reflectance, const NormalFitOptions& options);
+
+}  // namespace lumitexel

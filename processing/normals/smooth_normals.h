@@ -1,0 +1,36 @@
+// All normals of an object together: what samples say of each, how far each may be from the coarse mesh's, and that neighbours deviate
+// from it alike. Gauss-Newton over the whole surface; the linear system, two unknowns a lumitexel, by conjugate gradients.
+//
+//   minimise  sum_i misfit_i(n_i, w_i) + |d_i|^2 / coarse_sigma^2 + sum_(ij) rho(|d_i - d_j|^2 / neighbour_sigma^2)
+//            + sum_loops (curl / curl_sigma)^2,      d_i = n_i - coarse_i
+//
+// rho is Student's, so that an edge costs little more than a steep slope. Where samples say nothing the neighbours decide; where they say
+// much, they do.
+#pragma once
+
+#include "processing/normals/normal_problem.h"
+
+namespace lumitexel {
+
+struct SmoothNormalOptions {
+  NormalPrior prior;
+  int steps = 6;
+  double largest_step_rad = 0.06;
+};
+
+struct NormalField {
+  std::vector<Eigen::Vector3d> normal;  // in world, unit
+  std::vector<TexelWeights> weights;
+};
+
+// From `start`; weights follow the normals in every step.
+NormalField smooth_normals(const NormalProblem& problem, NormalField start, const SmoothNormalOptions& options);
+
+// What is minimised.
+double normal_objective(const NormalProblem& problem, const NormalField& field, const NormalPrior& prior);
+
+// One sigma of each normal per tangent axis, radians: from draws of the posterior about the field as the linearised problem has it, the
+// same draws every time.
+std::vector<float> normal_sigmas(const NormalProblem& problem, const NormalField& field, const NormalPrior& prior);
+
+}  // namespace lumitexel
