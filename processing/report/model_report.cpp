@@ -12,7 +12,8 @@ namespace lumitexel {
 std::string report_json(const ReportSubject& subject) {
   using Json = nlohmann::json;
   const bool compared = subject.session != nullptr && subject.evaluation != nullptr;
-  const Json data = {{"evaluation", compared ? Json::parse(evaluation_json(*subject.evaluation)) : Json(nullptr)},
+  const Json data = {{"summary", summary_json(subject)},
+                     {"evaluation", compared ? Json::parse(evaluation_json(*subject.evaluation)) : Json(nullptr)},
                      {"provenance", Json::parse(subject.model.provenance_json)},
                      {"texels_by_material", texels_by_material(subject.model)},
                      {"coverage", coverage_json(subject.model)},
@@ -26,8 +27,9 @@ std::string model_report(const ReportSubject& subject, Progress& progress) {
   const ViewRenderer renderer(subject.model);
   const bool compared = subject.session != nullptr && subject.evaluation != nullptr;
 
-  std::string body = headline(subject, provenance);
+  std::string body = headline(subject, summary_json(subject));
   if (compared) {
+    body += typical_comparison(subject, renderer);
     body += comparison_section(subject, renderer, progress);
   } else {
     body += html::section("Photographs",

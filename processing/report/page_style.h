@@ -13,6 +13,8 @@ h2 { font-size: 20px; margin: 0 0 6px; font-weight: 650; }
 h3 { font-size: 16px; margin: 24px 0 8px; font-weight: 650; }
 p { max-width: 76ch; margin: 0 0 14px; color: var(--quiet); }
 header p { font-size: 17px; }
+header p.finding { font-size: 19px; color: var(--ink); }
+.first { margin-top: 24px; }
 section { border-top: 1px solid var(--line); padding-top: 26px; margin-top: 36px; }
 .tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(138px, 1fr)); gap: 12px; margin-top: 22px; }
 .tile { background: var(--panel); border-radius: 8px; padding: 14px 16px; }

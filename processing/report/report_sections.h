@@ -13,8 +13,15 @@ namespace lumitexel {
 // For each material, how many texels are of it and were fitted to samples; filled-in ones do not count.
 std::vector<std::int64_t> texels_by_material(const Model& model);
 
+// ---- what a reader takes along who reads no further (report_summary.cpp)
+// {"materials", "share_of_surface_measured", "samples", "fit_seconds", "prediction": {"kept_out_of_the_fit", "photographs", "square_roots",
+// "clipped", "in_words", "shown": the photograph}}; the prediction is null where nothing was compared.
+nlohmann::json summary_json(const ReportSubject& subject);
+std::string headline(const ReportSubject& subject, const nlohmann::json& summary);
+// The photograph of median error beside its re-rendering. The subject has a session and an evaluation.
+std::string typical_comparison(const ReportSubject& subject, const ViewRenderer& renderer);
+
 // ---- numbers (report_tables.cpp)
-std::string headline(const ReportSubject& subject, const nlohmann::json& provenance);
 std::string sample_error_section(const nlohmann::json& provenance);  // the paper's Table II
 std::string photograph_error_section(const Evaluation& evaluation);
 std::string outlier_section(const nlohmann::json& provenance);  // empty for a model that was not looked through

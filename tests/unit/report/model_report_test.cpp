@@ -59,7 +59,7 @@ TEST_F(ModelReport, NeedsNothingButItself) {
   for (std::size_t at = html.find("src="); at != std::string::npos; at = html.find("src=", at + 1), ++pictures) {
     EXPECT_EQ(html.substr(at, 33), "src=\"data:image/png;base64,iVBORw") << "a PNG's first bytes";
   }
-  EXPECT_EQ(pictures, 7u) << "photograph, rendering, difference, map, sphere, coverage, uncertainty";
+  EXPECT_EQ(pictures, 9u) << "photograph and rendering on top; photograph, rendering, difference, map, sphere, coverage, uncertainty";
 }
 
 TEST_F(ModelReport, SaysTheNumbersOfTheFitAndOfTheComparison) {

@@ -1,0 +1,156 @@
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "processing/report/html.h"
+#include "processing/report/measured_area.h"
+#include "processing/report/report_sections.h"
+#include "processing/report/view_pictures.h"
+
+namespace lumitexel {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kPictureWidth_px = 540;
+
+// By the error on square roots, which is nearest to how differences look.
+struct Verdict {
+  double below;
+  const char* words;
+};
+constexpr Verdict kVerdicts[] = {{0.05, "almost exactly"},
+                                 {0.1, "closely"},
+                                 {0.2, "well, with small differences"},
+                                 {0.4, "recognisably, with differences that show"},
+                                 {HUGE_VAL, "poorly"}};
+
+std::string in_words(double sqrt_rms) {
+  for (const Verdict& verdict : kVerdicts) {
+    if (sqrt_rms < verdict.below) return verdict.words;
+  }
+  return "not at all";  // not a number
+}
+
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+std::string percent(double share) { return html::number(100.0 * share, 2) + " %"; }
+
+// The one with the median clipped error of its kind, so that neither the best nor the worst is shown. Held-out ones if there are any.
+std::optional<std::size_t> typical_view(const Evaluation& evaluation) {
+  const bool heldout = std::any_of(evaluation.views.begin(), evaluation.views.end(), [](const ViewEvaluation& v) { return v.heldout; });
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < evaluation.views.size(); ++i) {
+    const ViewEvaluation& view = evaluation.views[i];
+    if (view.heldout == heldout && std::isfinite(view.error.clipped_rms)) order.push_back(i);
+  }
+  if (order.empty()) return std::nullopt;
+  const auto middle = order.begin() + static_cast<std::ptrdiff_t>((order.size() - 1) / 2);
+  std::nth_element(order.begin(), middle, order.end(), [&](std::size_t a, std::size_t b) {
+    return evaluation.views[a].error.clipped_rms < evaluation.views[b].error.clipped_rms;
+  });
+  return *middle;
+}
+
+Json prediction_json(const Evaluation& evaluation) {
+  const std::optional<std::size_t> typical = typical_view(evaluation);
+  const bool heldout = typical && evaluation.views[*typical].heldout;
+  const auto& error = (heldout ? evaluation.heldout : evaluation.fit)[static_cast<std::size_t>(evaluation.last_stage)];
+  if (!typical || !error) return nullptr;
+  const auto photographs = std::count_if(evaluation.views.begin(), evaluation.views.end(), [&](const ViewEvaluation& v) { return v.heldout == heldout; });
+  return {{"kept_out_of_the_fit", heldout},
+          {"photographs", photographs},
+          {"square_roots", number_or_null(error->sqrt_rms)},
+          {"clipped", number_or_null(error->clipped_rms)},
+          {"in_words", in_words(error->sqrt_rms)},
+          {"shown", evaluation.views[*typical].image}};
+}
+
+std::string prediction_text(const Json& prediction) {
+  const auto number = [&](const char* key) { return prediction.at(key).is_number() ? percent(prediction.at(key).get<double>()) : "–"; };
+  const auto count = prediction.at("photographs").get<std::int64_t>();
+  const bool heldout = prediction.at("kept_out_of_the_fit").get<bool>();
+  const std::string photographs = count == 1 ? "One photograph" : std::to_string(count) + " photographs";
+  return (heldout ? photographs + " were kept out of the measurement as a test, and the model predicts them "
+                  : photographs + " were used and none was kept out as a test; the model repeats them ") +
+         prediction.at("in_words").get<std::string>() + ": the difference is " + number("square_roots") + " of the picture as the eye weighs light and dark, and " +
+         number("clipped") + " in plain light (highlights capped).";
+}
+
+// Never "100 %" where something is missing.
+std::string share_text(double share) {
+  if (share >= 1.0) return "All";
+  return share >= 0.995 ? "Over 99 %" : percent(share);
+}
+
+std::string surface_text(const Json& summary) {
+  const auto materials = summary.at("materials").get<std::size_t>();
+  const double share = summary.at("share_of_surface_measured").get<double>();
+  return (materials == 1 ? std::string("One material was") : std::to_string(materials) + " materials were") + " found. " + share_text(share) +
+         " of the object's surface was measured" + (share < 1.0 ? "; the rest no photograph saw lit, and it borrows from what is beside it." : ".");
+}
+
+std::string tile(const std::string& value, const std::string& meaning) {
+  return "<div class=\"tile\"><b>" + html::escaped(value) + "</b><span>" + html::escaped(meaning) + "</span></div>\n";
+}
+
+std::string tiles(const ReportSubject& subject, const Json& summary) {
+  std::int64_t texels = 0;
+  for (const std::int64_t count : texels_by_material(subject.model)) texels += count;
+  std::string text = "<div class=\"tiles\">" + tile(std::to_string(subject.model.materials.size()), "materials found") +
+                     tile(share_text(summary.at("share_of_surface_measured").get<double>()), "of the surface measured") +
+                     tile(std::to_string(texels), "surface points (texels) measured") +
+                     tile(html::number(summary.at("samples").is_number() ? summary.at("samples").get<double>() : NAN, 8), "reflectance samples the fit used");
+  const Json& prediction = summary.at("prediction");
+  if (prediction.is_object()) {
+    const auto& error = (prediction.at("kept_out_of_the_fit").get<bool>() ? subject.evaluation->heldout
+                                                                            : subject.evaluation->fit)[static_cast<std::size_t>(subject.evaluation->last_stage)];
+    const std::string which = prediction.at("kept_out_of_the_fit").get<bool>() ? "photographs kept out of the fit" : "photographs of the fit";
+    text += tile(html::number(error->clipped_rms), "clipped relative error on " + which);
+    text += tile(html::number(error->psnr_db) + " dB", "PSNR on " + which);
+  }
+  const Json& seconds = summary.at("fit_seconds");
+  return text + tile(html::number(seconds.is_number() ? seconds.get<double>() : NAN) + " s", "computing time of the fit") + "</div>";
+}
+
+}  // namespace
+
+Json summary_json(const ReportSubject& subject) {
+  const Json provenance = Json::parse(subject.model.provenance_json);
+  double seconds = 0.0;
+  for (const Json& stage : provenance.value("stages", Json::array())) {
+    if (stage.contains("seconds") && stage.at("seconds").is_number()) seconds += stage.at("seconds").get<double>();
+  }
+  const bool compared = subject.session != nullptr && subject.evaluation != nullptr;
+  return {{"materials", subject.model.materials.size()},
+          {"share_of_surface_measured", measured_area_share(subject.model)},
+          {"samples", provenance.contains("samples") ? provenance.at("samples") : Json(nullptr)},
+          {"fit_seconds", seconds},
+          {"prediction", compared ? prediction_json(*subject.evaluation) : Json(nullptr)}};
+}
+
+std::string headline(const ReportSubject& subject, const Json& summary) {
+  std::string text = "<header><h1>" + html::escaped(subject.name) +
+                     "</h1>\n<p>How the surface of this object reflects light, measured from photographs under a moving lamp. Every point "
+                     "of the surface has its own reflectance, so the object can be shown from any side under any light.</p>\n<p class=\"finding\">";
+  if (summary.at("prediction").is_object()) text += html::escaped(prediction_text(summary.at("prediction"))) + " ";
+  return text + html::escaped(surface_text(summary)) + "</p>\n" + tiles(subject, summary) + "</header>\n";
+}
+
+std::string typical_comparison(const ReportSubject& subject, const ViewRenderer& renderer) {
+  const std::optional<std::size_t> typical = typical_view(*subject.evaluation);
+  if (!typical) return "";
+  const View& view = subject.session->views[*typical];
+  const ViewPictures pictures = make_view_pictures(renderer, view, subject.model.channels, subject.evaluation->last_stage, kPictureWidth_px);
+  const std::string kind = view.heldout ? ", kept out of the fit. " : ", used in the fit. ";
+  return "<div class=\"row first\">" +
+         html::figure(html::picture(pictures.photograph, "photograph " + view.name),
+                      "Photograph " + view.name + kind + "Of its kind the one with the median error: neither the best nor the worst.") +
+         html::figure(html::picture(pictures.rendering, "rendering of " + view.name),
+                      "What the model says it should look like, at the same exposure: clipped relative error " +
+                          html::number(subject.evaluation->views[*typical].error.clipped_rms) + ".") +
+         "</div>\n";
+}
+
+}  // namespace lumitexel
