@@ -103,7 +103,7 @@ TEST(Export, GltfStatesTheLossAndItsBufferIsWhole) {
   const std::filesystem::path out = folder.path() / "gltf";
   const Model model = model_of(sphere_mesh(40, 20), 4, 4, with_lobe(BrdfFamily::Ggx, 0.1, std::log(0.2), 2.0 * std::log(0.5)));
   NoProgress quiet;
-  const ConversionLoss loss = export_gltf(model, out, quiet);
+  const ConversionLoss loss = export_model(model, ExportFormat::Gltf, out, quiet);
   EXPECT_GT(loss.error.psnr_db, 38.0);  // 8 bits and the diffuse light's fall alone stand between the two
   std::ifstream file(out / "model.gltf");
   const nlohmann::json document = nlohmann::json::parse(file);
@@ -111,7 +111,7 @@ TEST(Export, GltfStatesTheLossAndItsBufferIsWhole) {
   EXPECT_EQ(document.at("buffers").at(0).at("byteLength"), std::filesystem::file_size(out / "model.bin"));
   EXPECT_EQ(document.at("accessors").at(0).at("count"), model.mesh.positions.size());
   EXPECT_EQ(read_raster(out / "base.png").code_values.at(1, 1, 0), std::round(255.0f * refit_maps(model, quiet).base.at(1, 1, 0)));
-  EXPECT_THROW(export_gltf(model, out, quiet), BadInput) << "nothing is overwritten";
+  EXPECT_THROW(export_model(model, ExportFormat::Gltf, out, quiet), BadInput) << "nothing is overwritten";
 }
 
 }  // namespace
