@@ -1,6 +1,7 @@
 #include "processing/export/export_model.h"
 
 #include "drivers/error.h"
+#include "processing/export/blender_scene.h"
 #include "processing/export/gltf_file.h"
 #include "processing/export/map_files.h"
 
@@ -9,10 +10,14 @@ namespace lumitexel {
 ExportFormat export_format_from_string(const std::string& name) {
   if (name == "gltf") return ExportFormat::Gltf;
   if (name == "maps") return ExportFormat::Maps;
-  throw BadInput("--to", "'" + name + "'", "gltf or maps");
+  if (name == "blender") return ExportFormat::Blender;
+  throw BadInput("--to", "'" + name + "'", "gltf, maps or blender");
 }
 
-const char* main_file(ExportFormat format) { return format == ExportFormat::Gltf ? "model.gltf" : "maps.json"; }
+const char* main_file(ExportFormat format) {
+  if (format == ExportFormat::Blender) return "scene.py";
+  return format == ExportFormat::Gltf ? "model.gltf" : "maps.json";
+}
 
 ConversionLoss export_model(const Model& model, ExportFormat format, const std::filesystem::path& directory, Progress& progress) {
   namespace fs = std::filesystem;
@@ -29,6 +34,7 @@ ConversionLoss export_model(const Model& model, ExportFormat format, const std::
   fs::create_directories(directory);
   if (format == ExportFormat::Gltf) write_gltf(directory, model.mesh, maps, loss);
   if (format == ExportFormat::Maps) write_map_files(directory, model, atlas, loss);
+  if (format == ExportFormat::Blender) write_blender_scene(directory, model, atlas, maps, loss);
   return loss;
 }
 

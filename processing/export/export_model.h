@@ -11,8 +11,9 @@ namespace lumitexel {
 enum class ExportFormat {
   Gltf,  // gltf_file.h
   Maps,  // map_files.h
+  Blender,  // blender_scene.h
 };
-ExportFormat export_format_from_string(const std::string& name);  // "gltf", "maps"; throws BadInput
+ExportFormat export_format_from_string(const std::string& name);  // "gltf", "maps", "blender"; throws BadInput
 // The file that another program opens first.
 const char* main_file(ExportFormat format);
 
