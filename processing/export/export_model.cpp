@@ -4,6 +4,7 @@
 #include "processing/export/blender_scene.h"
 #include "processing/export/gltf_file.h"
 #include "processing/export/map_files.h"
+#include "processing/export/materialx_file.h"
 
 namespace lumitexel {
 
@@ -11,11 +12,13 @@ ExportFormat export_format_from_string(const std::string& name) {
   if (name == "gltf") return ExportFormat::Gltf;
   if (name == "maps") return ExportFormat::Maps;
   if (name == "blender") return ExportFormat::Blender;
-  throw BadInput("--to", "'" + name + "'", "gltf, maps or blender");
+  if (name == "materialx") return ExportFormat::Materialx;
+  throw BadInput("--to", "'" + name + "'", "gltf, maps, blender or materialx");
 }
 
 const char* main_file(ExportFormat format) {
   if (format == ExportFormat::Blender) return "scene.py";
+  if (format == ExportFormat::Materialx) return "model.mtlx";
   return format == ExportFormat::Gltf ? "model.gltf" : "maps.json";
 }
 
@@ -35,6 +38,7 @@ ConversionLoss export_model(const Model& model, ExportFormat format, const std::
   if (format == ExportFormat::Gltf) write_gltf(directory, model.mesh, maps, loss);
   if (format == ExportFormat::Maps) write_map_files(directory, model, atlas, loss);
   if (format == ExportFormat::Blender) write_blender_scene(directory, model, atlas, maps, loss);
+  if (format == ExportFormat::Materialx) write_materialx(directory, model.mesh, maps, loss);
   return loss;
 }
 

@@ -12,8 +12,9 @@ enum class ExportFormat {
   Gltf,  // gltf_file.h
   Maps,  // map_files.h
   Blender,  // blender_scene.h
+  Materialx,  // materialx_file.h
 };
-ExportFormat export_format_from_string(const std::string& name);  // "gltf", "maps", "blender"; throws BadInput
+ExportFormat export_format_from_string(const std::string& name);  // "gltf", "maps", "blender", "materialx"; throws BadInput
 // The file that another program opens first.
 const char* main_file(ExportFormat format);
 

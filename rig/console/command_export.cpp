@@ -38,7 +38,8 @@ void add_export_command(CLI::App& app, CommandAction& action) {
   CLI::App* command = app.add_subcommand("export", "Write a model for other programs, and how much of its look that costs");
   command->add_option("MODEL", settings->model, "Folder of the model")->required();
   command->add_option("--to", settings->to, "gltf: glTF 2.0, metallic-roughness with KHR_materials_specular; maps: every map as EXR and PNG, told apart in maps.json; "
-                      "blender: scene.py, run by blender --python scene.py")->required();
+                      "blender: scene.py, run by blender --python scene.py; "
+                      "materialx: model.mtlx with textures")->required();
   command->add_option("--out", settings->out, "New or empty folder to write into")->required();
   command->callback([settings, &action] {
     action = [settings](CommandContext& context) { return export_command(*settings, context); };
