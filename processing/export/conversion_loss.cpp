@@ -2,6 +2,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include "processing/export/tangent_frame.h"
+
 namespace lumitexel {
 namespace {
 
@@ -32,11 +34,24 @@ GltfMaterial filtered(const ExportedMaps& maps, const TexturedPoint& point) {
   return sum;
 }
 
+// Textures' normals are filtered as they are stored, and brought to length 1 where they are used.
+Eigen::Vector3d shading_normal(const ExportedMaps& maps, const Mesh& mesh, const std::vector<Eigen::Vector4d>& tangents,
+                               const TexturedPoint& point) {
+  if (maps.normal.channels == 0) return point.vertex_normal;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int i = 0; i < point.texel_count; ++i) {
+    const TexelShare& share = point.texels[static_cast<std::size_t>(i)];
+    sum += share.weight * decoded_normal(maps.normal, share.x, share.y);
+  }
+  return (tangent_frame(mesh, tangents, point.triangle, point.u, point.v) * sum).normalized();
+}
+
 }  // namespace
 
 Image render_exported(const Model& model, const ExportedMaps& maps, const View& view) {
   const Model shell = textured_shell(model);
   const ModelSurface surface(shell);
+  const std::vector<Eigen::Vector4d> tangents = vertex_tangents(model.mesh);
   const Eigen::Isometry3d world_from_camera = view.camera_from_world.inverse();
   const Eigen::Vector3d eye = world_from_camera.translation();
   Image radiance(view.camera.width_px, view.camera.height_px, model.channels);
@@ -45,7 +60,8 @@ Image render_exported(const Model& model, const ExportedMaps& maps, const View& 
       const auto point = surface.trace(eye, world_from_camera.linear() * view.camera.unproject({x + 0.5, y + 0.5}));
       if (!point || !surface.sees(*point, view.light)) continue;
       const Eigen::Vector3d at = point->position_in_world;
-      const LobeGeometry geometry = lobe_geometry(point->vertex_normal, view.light.direction_from(at), (eye - at).normalized());
+      const LobeGeometry geometry = lobe_geometry(shading_normal(maps, model.mesh, tangents, *point), view.light.direction_from(at), (eye - at).normalized());
+      if (geometry.cos_i <= 0.0) continue;
       const ChannelValues f = evaluate(filtered(maps, *point), geometry);
       for (int c = 0; c < model.channels; ++c) {
         radiance.at(x, y, c) =

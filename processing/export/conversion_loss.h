@@ -1,6 +1,6 @@
 // What a conversion changes in the picture: the model and the converted material rendered from six sides under two lights each, the one beside
 // the camera (highlights towards the viewer) and one raking, and compared as photographs are (image_error.h). The converted material is
-// evaluated from the textures as written, filtered bilinearly, on the mesh's own vertex normals.
+// evaluated from the textures as written, filtered bilinearly, in the mesh's tangent frames.
 #pragma once
 
 #include "processing/export/exported_maps.h"

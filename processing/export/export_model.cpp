@@ -1,11 +1,28 @@
 #include "processing/export/export_model.h"
 
 #include "drivers/error.h"
+#include "processing/export/blender_scene.h"
 #include "processing/export/gltf_file.h"
+#include "processing/export/map_files.h"
+#include "processing/export/materialx_file.h"
 
 namespace lumitexel {
 
-ConversionLoss export_gltf(const Model& model, const std::filesystem::path& directory, Progress& progress) {
+ExportFormat export_format_from_string(const std::string& name) {
+  if (name == "gltf") return ExportFormat::Gltf;
+  if (name == "maps") return ExportFormat::Maps;
+  if (name == "blender") return ExportFormat::Blender;
+  if (name == "materialx") return ExportFormat::Materialx;
+  throw BadInput("--to", "'" + name + "'", "gltf, maps, blender or materialx");
+}
+
+const char* main_file(ExportFormat format) {
+  if (format == ExportFormat::Blender) return "scene.py";
+  if (format == ExportFormat::Materialx) return "model.mtlx";
+  return format == ExportFormat::Gltf ? "model.gltf" : "maps.json";
+}
+
+ConversionLoss export_model(const Model& model, ExportFormat format, const std::filesystem::path& directory, Progress& progress) {
   namespace fs = std::filesystem;
   if (fs::exists(directory) && !(fs::is_directory(directory) && fs::is_empty(directory))) {
     throw BadInput("--out", "'" + directory.string() + "' exists", "a new or empty folder");
@@ -14,10 +31,14 @@ ConversionLoss export_gltf(const Model& model, const std::filesystem::path& dire
   if (model.channels != 1 && model.channels != 3) {
     throw BadInput("model", std::to_string(model.channels) + " channels", "one, or three taken for red, green and blue");
   }
-  const ExportedMaps maps = refit_maps(model, progress);
+  const RefittedAtlas atlas = refit_atlas(model, progress);
+  const ExportedMaps maps = textures_of(atlas);
   const ConversionLoss loss = conversion_loss(model, maps, progress);
   fs::create_directories(directory);
-  write_gltf(directory, model.mesh, maps, loss);
+  if (format == ExportFormat::Gltf) write_gltf(directory, model.mesh, maps, loss);
+  if (format == ExportFormat::Maps) write_map_files(directory, model, atlas, loss);
+  if (format == ExportFormat::Blender) write_blender_scene(directory, model, atlas, maps, loss);
+  if (format == ExportFormat::Materialx) write_materialx(directory, model.mesh, maps, loss);
   return loss;
 }
 

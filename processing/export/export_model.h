@@ -8,8 +8,18 @@
 
 namespace lumitexel {
 
+enum class ExportFormat {
+  Gltf,  // gltf_file.h
+  Maps,  // map_files.h
+  Blender,  // blender_scene.h
+  Materialx,  // materialx_file.h
+};
+ExportFormat export_format_from_string(const std::string& name);  // "gltf", "maps", "blender", "materialx"; throws BadInput
+// The file that another program opens first.
+const char* main_file(ExportFormat format);
+
 // Writes into `directory`, which is made; throws BadInput if it exists and is not empty, if the model's mesh has no texture coordinates or
 // if it has neither one nor three channels. Returns what the conversion loses.
-ConversionLoss export_gltf(const Model& model, const std::filesystem::path& directory, Progress& progress);
+ConversionLoss export_model(const Model& model, ExportFormat format, const std::filesystem::path& directory, Progress& progress);
 
 }  // namespace lumitexel

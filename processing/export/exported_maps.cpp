@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
 
+#include "processing/export/nearest_texel.h"
 #include "processing/export/refit.h"
 #include "processing/image/tone_map.h"
 
@@ -15,33 +15,6 @@ namespace {
 
 std::size_t texel_index(const Model& model, int x, int y) {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(model.width) + static_cast<std::size_t>(x);
-}
-
-// For every texel the nearest (breadth first, over edges) that has a material; itself where it has one.
-std::vector<std::size_t> nearest_with_material(const Model& model) {
-  constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-  std::vector<std::size_t> source(model.material.size(), kNone), queue;
-  for (std::size_t t = 0; t < source.size(); ++t) {
-    if (model.material[t] == Model::kNoMaterial) continue;
-    source[t] = t;
-    queue.push_back(t);
-  }
-  for (std::size_t head = 0; head < queue.size(); ++head) {
-    const std::size_t from = queue[head];
-    const int x = static_cast<int>(from % static_cast<std::size_t>(model.width));
-    const int y = static_cast<int>(from / static_cast<std::size_t>(model.width));
-    for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
-      if (x + dx < 0 || y + dy < 0 || x + dx >= model.width || y + dy >= model.height) continue;
-      const std::size_t to = texel_index(model, x + dx, y + dy);
-      if (source[to] != kNone) continue;
-      source[to] = source[from];
-      queue.push_back(to);
-    }
-  }
-  for (std::size_t t = 0; t < source.size(); ++t) {
-    if (source[t] == kNone) source[t] = t;  // a model without any material: black
-  }
-  return source;
 }
 
 float rounded(double unit) { return static_cast<float>(std::round(255.0 * std::clamp(unit, 0.0, 1.0)) / 255.0); }
@@ -67,16 +40,25 @@ std::vector<GltfMaterial> refit_texels(const Model& model, Progress& progress) {
 
 }  // namespace
 
-ExportedMaps refit_maps(const Model& model, Progress& progress) {
-  const std::vector<GltfMaterial> texels = refit_texels(model, progress);
-  const std::vector<std::size_t> source = nearest_with_material(model);
-  ExportedMaps maps{Image(model.width, model.height, 3), Image(model.width, model.height, 3), Image(model.width, model.height, 1)};
-  for (std::size_t t = 0; t < texels.size(); ++t) {
-    if (model.material[t] == Model::kNoMaterial) continue;
-    for (const double f0 : texels[t].f0) maps.most_f0 = std::max(maps.most_f0, f0);
+RefittedAtlas refit_atlas(const Model& model, Progress& progress) {
+  const std::vector<GltfMaterial> fitted = refit_texels(model, progress);
+  std::vector<std::uint8_t> known(model.material.size());
+  for (std::size_t t = 0; t < known.size(); ++t) known[t] = model.material[t] != Model::kNoMaterial ? 1 : 0;
+  const std::vector<std::size_t> source = nearest_known_texel(model.width, model.height, known);
+  RefittedAtlas atlas{model.width, model.height, {}, export_normals(model)};
+  atlas.texels.reserve(fitted.size());
+  for (const std::size_t from : source) atlas.texels.push_back(fitted[from]);
+  return atlas;
+}
+
+ExportedMaps textures_of(const RefittedAtlas& atlas) {
+  const int width = atlas.width, height = atlas.height;
+  ExportedMaps maps{Image(width, height, 3), Image(width, height, 3), Image(width, height, 1), {}};
+  for (const GltfMaterial& texel : atlas.texels) {
+    for (const double f0 : texel.f0) maps.most_f0 = std::max(maps.most_f0, f0);
   }
-  for (std::size_t t = 0; t < texels.size(); ++t) {
-    const GltfMaterial& texel = texels[source[t]];
+  for (std::size_t t = 0; t < atlas.texels.size(); ++t) {
+    const GltfMaterial& texel = atlas.texels[t];
     for (std::size_t c = 0; c < 3; ++c) {
       const double share = maps.most_f0 > 0.0 ? texel.f0[c] / maps.most_f0 : 0.0;
       maps.base.data[3 * t + c] = rounded(srgb_encoded(static_cast<float>(texel.base[c])));
@@ -84,7 +66,20 @@ ExportedMaps refit_maps(const Model& model, Progress& progress) {
     }
     maps.roughness.data[t] = rounded(texel.roughness);
   }
+  if (atlas.normals.tilt_rms_rad > kLeastStatedTilt_rad) maps.normal = coded_normals(atlas.normals.tangent);
   return maps;
+}
+
+ExportedMaps refit_maps(const Model& model, Progress& progress) { return textures_of(refit_atlas(model, progress)); }
+
+Image coded_normals(const Image& normals) {
+  Image coded = normals;
+  for (float& value : coded.data) value = rounded(0.5 * value + 0.5);
+  return coded;
+}
+
+Eigen::Vector3d decoded_normal(const Image& coded, int x, int y) {
+  return 2.0 * Eigen::Vector3d(coded.at(x, y, 0), coded.at(x, y, 1), coded.at(x, y, 2)) - Eigen::Vector3d::Ones();
 }
 
 double srgb_decoded(double code) {

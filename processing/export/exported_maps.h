@@ -1,22 +1,37 @@
 // A model's atlas as the textures of glTF's material, as they are written: rounded to 8 bits.
 #pragma once
 
+#include "processing/export/exported_normals.h"
 #include "processing/export/gltf_material.h"
 #include "processing/model/model.h"
 #include "rig/progress.h"
 
 namespace lumitexel {
 
+// Before rounding. Texels without a material hold their nearest neighbour's.
+struct RefittedAtlas {
+  int width = 0, height = 0;
+  std::vector<GltfMaterial> texels;  // row by row
+  ExportedNormals normals;
+};
+
 struct ExportedMaps {
   // In [0, 1], steps of 1/255. Base and specular on the sRGB curve (IEC 61966-2-1, the three channels taken for linear Rec. 709 as the
   // model has them), roughness linear. Texels without a material hold their nearest neighbour's, so that no seam shows when filtered.
   Image base, specular, roughness;  // 3, 3, 1 channels
+  Image normal;          // 3 channels, (n + 1) / 2 in the tangent frame; no channels where 8 bits would only say that the mesh's normals hold
   double most_f0 = 0;               // what 1 in `specular` stands for
 };
 
 // Every texel's mixture is refitted (refit.h). Parallel over rows; the same for any number of threads.
+RefittedAtlas refit_atlas(const Model& model, Progress& progress);
+ExportedMaps textures_of(const RefittedAtlas& atlas);
+// Both.
 ExportedMaps refit_maps(const Model& model, Progress& progress);
 
+// Unit vectors as the 8 bits of a picture, rounded, in [0, 1], and back; not brought to length 1.
+Image coded_normals(const Image& normals);
+Eigen::Vector3d decoded_normal(const Image& coded, int x, int y);
 // The inverse of the sRGB curve.
 double srgb_decoded(double code);
 // What a texel says once decoded.

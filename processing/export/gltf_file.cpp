@@ -3,12 +3,13 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "drivers/error.h"
+#include "processing/export/loss_json.h"
+#include "processing/export/tangent_frame.h"
 #include "processing/image/raster_file.h"
+#include "rig/whole_file.h"
 
 namespace lumitexel {
 namespace {
@@ -38,12 +39,6 @@ class BufferWriter {
   std::string bytes_;
 };
 
-void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
-  std::ofstream file(path, std::ios::binary);
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!file.flush()) throw Error(path.string() + ": cannot be written");
-}
-
 void bound(json& accessor, const std::vector<float>& xyz) {
   std::array<float, 3> low, high;
   low.fill(std::numeric_limits<float>::infinity());
@@ -56,7 +51,7 @@ void bound(json& accessor, const std::vector<float>& xyz) {
   accessor["max"] = high;
 }
 
-json primitive_of(const Mesh& mesh, BufferWriter& buffer) {
+json primitive_of(const Mesh& mesh, bool with_tangents, BufferWriter& buffer) {
   std::vector<float> positions, normals, texcoords;
   std::vector<std::uint32_t> indices;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
@@ -74,22 +69,25 @@ json primitive_of(const Mesh& mesh, BufferWriter& buffer) {
   const int normal = buffer.add(normals, 3, "VEC3", kFloat, kVertexTarget);
   const int texcoord = buffer.add(texcoords, 2, "VEC2", kFloat, kVertexTarget);
   const int index = buffer.add(indices, 1, "SCALAR", kUnsigned, kIndexTarget);
-  return {{"attributes", {{"POSITION", position}, {"NORMAL", normal}, {"TEXCOORD_0", texcoord}}}, {"indices", index}, {"material", 0}};
+  json attributes = {{"POSITION", position}, {"NORMAL", normal}, {"TEXCOORD_0", texcoord}};
+  if (with_tangents) {
+    std::vector<float> tangents;
+    for (const Eigen::Vector4d& tangent : vertex_tangents(mesh)) {
+      for (int k = 0; k < 4; ++k) tangents.push_back(static_cast<float>(tangent[k]));
+    }
+    attributes["TANGENT"] = buffer.add(tangents, 4, "VEC4", kFloat, kVertexTarget);
+  }
+  return {{"attributes", attributes}, {"indices", index}, {"material", 0}};
 }
 
 json material_of(const ExportedMaps& maps) {
   const double factor = maps.most_f0 / kDielectricF0;
-  return {{"pbrMetallicRoughness",
+  json material = {{"pbrMetallicRoughness",
            {{"baseColorTexture", {{"index", 0}}}, {"metallicRoughnessTexture", {{"index", 2}}}, {"metallicFactor", 0.0}}},
           {"extensions",
            {{"KHR_materials_specular", {{"specularColorFactor", {factor, factor, factor}}, {"specularColorTexture", {{"index", 1}}}}}}}};
-}
-
-json loss_of(const ConversionLoss& loss) {
-  // JSON knows no infinity; equal images have no PSNR to state.
-  const json psnr = std::isfinite(loss.error.psnr_db) ? json(loss.error.psnr_db) : json();
-  return {{"views", loss.views}, {"psnr_db", psnr}, {"relative_rms", loss.error.relative_rms},
-          {"clipped_rms", loss.error.clipped_rms}, {"sqrt_rms", loss.error.sqrt_rms}};
+  if (maps.normal.channels > 0) material["normalTexture"] = {{"index", 3}};
+  return material;
 }
 
 // Green is roughness, blue metalness: none.
@@ -106,10 +104,11 @@ void write_gltf(const std::filesystem::path& directory, const Mesh& mesh, const 
   write_png8(directory / "specular.png", maps.specular);
   write_png8(directory / "metallic_roughness.png", metallic_roughness(maps.roughness));
   BufferWriter buffer;
-  const json primitive = primitive_of(mesh, buffer);
+  const bool with_normals = maps.normal.channels > 0;
+  const json primitive = primitive_of(mesh, with_normals, buffer);
   json document;
   document["asset"] = {{"version", "2.0"}, {"generator", "Lumitexel"},
-                       {"extras", {{"conversion_loss", loss_of(loss)}, {"unit", "metre"}, {"axes", "the session's world"}}}};
+                       {"extras", {{"conversion_loss", loss_json(loss)}, {"unit", "metre"}, {"axes", "the session's world"}}}};
   document["extensionsUsed"] = {"KHR_materials_specular"};
   document["scene"] = 0;
   document["scenes"] = json::array({{{"nodes", {0}}}});
@@ -119,12 +118,16 @@ void write_gltf(const std::filesystem::path& directory, const Mesh& mesh, const 
   // Clamped: opposite edges of an atlas have nothing to do with each other.
   document["samplers"] = json::array({{{"magFilter", 9729}, {"minFilter", 9729}, {"wrapS", 33071}, {"wrapT", 33071}}});
   document["images"] = json::array({{{"uri", "base.png"}}, {{"uri", "specular.png"}}, {{"uri", "metallic_roughness.png"}}});
-  for (int i = 0; i < 3; ++i) document["textures"].push_back({{"source", i}, {"sampler", 0}});
+  if (with_normals) {
+    write_png8(directory / "normal.png", maps.normal);
+    document["images"].push_back({{"uri", "normal.png"}});
+  }
+  for (std::size_t i = 0; i < document["images"].size(); ++i) document["textures"].push_back({{"source", i}, {"sampler", 0}});
   document["bufferViews"] = buffer.views;
   document["accessors"] = buffer.accessors;
   document["buffers"] = json::array({{{"uri", "model.bin"}, {"byteLength", buffer.bytes().size()}}});
-  write_bytes(directory / "model.bin", buffer.bytes());
-  write_bytes(directory / "model.gltf", document.dump(1) + "\n");
+  write_whole_file(directory / "model.bin", buffer.bytes());
+  write_whole_file(directory / "model.gltf", document.dump(1) + "\n");
 }
 
 }  // namespace lumitexel

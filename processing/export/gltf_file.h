@@ -1,4 +1,5 @@
-// glTF 2.0: model.gltf, model.bin, base.png, specular.png, metallic_roughness.png.
+// glTF 2.0: model.gltf, model.bin, base.png, specular.png, metallic_roughness.png, and normal.png with tangents where the texels' normals
+// are not the mesh's.
 #pragma once
 
 #include <filesystem>

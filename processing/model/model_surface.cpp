@@ -23,6 +23,9 @@ std::optional<TexturedPoint> ModelSurface::trace(const Eigen::Vector3d& origin, 
   point.geometric_normal =
       (mesh.positions[b] - mesh.positions[a]).cross(mesh.positions[c] - mesh.positions[a]).normalized();
   point.vertex_normal = interpolate(mesh.normals).normalized();
+  point.triangle = hit->triangle;
+  point.u = hit->u;
+  point.v = hit->v;
   add_texels(interpolate(mesh.texcoords), point);
   return point;
 }

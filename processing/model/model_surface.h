@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <optional>
 
 #include "processing/calibration/calibrated_session.h"
@@ -22,6 +23,8 @@ struct TexturedPoint {
   // The texels around the point that have a material, weights summing to 1; none at all in a hole of the atlas.
   std::array<TexelShare, 4> texels;
   int texel_count = 0;
+  std::uint32_t triangle = 0;
+  double u = 0, v = 0;  // barycentric weights of its second and third corner
 };
 
 class ModelSurface {

@@ -67,18 +67,23 @@ Eigen::Matrix<double, 3, 2> texel_steps(const Model& model, std::uint32_t triang
   return sides * edges.inverse();
 }
 
+Eigen::Vector2d texel_barycentric(const Model& model, int x, int y, std::uint32_t triangle) {
+  const Eigen::Matrix2d edges = texel_edges(model, triangle);
+  if (std::abs(edges.determinant()) < kNoArea) return Eigen::Vector2d::Constant(1.0 / 3.0);
+  return edges.inverse() * (Eigen::Vector2d(x + 0.5, y + 0.5) - texel_of(model, model.mesh.triangles[triangle][0]));
+}
+
 TexturedPoint texel_point(const Model& model, int x, int y, std::uint32_t triangle) {
   const auto& [a, b, c] = model.mesh.triangles[triangle];
-  const Eigen::Matrix2d edges = texel_edges(model, triangle);
-  Eigen::Vector2d at = Eigen::Vector2d::Constant(1.0 / 3.0);
-  if (std::abs(edges.determinant()) >= kNoArea) {
-    at = edges.inverse() * (Eigen::Vector2d(x + 0.5, y + 0.5) - texel_of(model, a));
-  }
+  const Eigen::Vector2d at = texel_barycentric(model, x, y, triangle);
   const auto interpolate = [&, i = a, j = b, k = c](const std::vector<Eigen::Vector3d>& attribute) {
     return ((1.0 - at.sum()) * attribute[i] + at.x() * attribute[j] + at.y() * attribute[k]).eval();
   };
   const std::vector<Eigen::Vector3d>& positions = model.mesh.positions;
   TexturedPoint point;
+  point.triangle = triangle;
+  point.u = at.x();
+  point.v = at.y();
   point.position_in_world = interpolate(positions);
   point.geometric_normal = (positions[b] - positions[a]).cross(positions[c] - positions[a]).normalized();
   point.vertex_normal = interpolate(model.mesh.normals).normalized();

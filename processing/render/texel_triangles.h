@@ -18,6 +18,9 @@ std::vector<std::int32_t> triangle_of_texel(const Model& model);
 // metres. Zero for a triangle whose image has no area.
 Eigen::Matrix<double, 3, 2> texel_steps(const Model& model, std::uint32_t triangle);
 
+// The texel's centre as weights of the triangle's second and third corner; the middle of a triangle whose image has no area.
+Eigen::Vector2d texel_barycentric(const Model& model, int x, int y, std::uint32_t triangle);
+
 // The surface point at the texel's centre, with this texel alone; on the triangle's plane, also where the centre lies
 // beside it.
 TexturedPoint texel_point(const Model& model, int x, int y, std::uint32_t triangle);

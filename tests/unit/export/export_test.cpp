@@ -56,20 +56,34 @@ TEST(Export, AGgxBrdfComesBackAsItself) {
   }
 }
 
-TEST(Export, ALafortuneLobeKeepsItsEnergy) {
+struct Energies {
+  double was = 0, is = 0;
+};
+
+// The mean over rings of equal area of a sphere's picture, from sin^2 of the viewer's angle `from` to `to`.
+Energies mean_energies(const Brdf& brdf, const GltfMaterial& material, double from, double to) {
+  constexpr int kRings = 4;
+  Energies mean;
+  for (int i = 0; i < kRings; ++i) {
+    const double angle = std::asin(std::sqrt(from + (to - from) * (i + 0.5) / kRings));
+    mean.was += energy([&](const LobeGeometry& g) { return evaluate(brdf, 0, g); }, angle) / kRings;
+    mean.is += energy([&](const LobeGeometry& g) { return evaluate(material, g)[0]; }, angle) / kRings;
+  }
+  return mean;
+}
+
+// What is guaranteed: a Lafortune lobe's light comes back within 10 % as a mean over the viewer's angles that are fitted, up to 45 degrees. Beyond, where a
+// Lafortune lobe dims and a microfacet lobe brightens, there is too much of it; how much at most is stated and held, too.
+TEST(Export, ALafortuneLobeKeepsItsEnergyWhereItIsFittedAndItsExcessBeyondIsBounded) {
+  constexpr double kWithinFitted = 0.10, kMostExcessBeyond = 0.40, kMostExcessOverall = 0.17;  // 0.32 to 0.37, 0.15 to 0.16
   for (const double exponent : {10.0, 50.0, 300.0}) {
     const double peak = 0.3 * (exponent + 2.0) / (2.0 * std::numbers::pi);  // about 0.3 of the light
     const Brdf brdf = with_lobe(BrdfFamily::Lafortune, 0.08, std::log(peak), std::log(exponent));
     const GltfMaterial material = refitted(brdf);
-    // A Lafortune lobe dims towards grazing, a microfacet lobe does not: no one angle agrees, but the mean
-    // over the part of a sphere's picture that is fitted (up to 45 degrees) has to. Over the whole sphere it is 13 to 15 % too much.
-    double was = 0.0, is = 0.0;
-    for (const double sin2 : {0.0625, 0.1875, 0.3125, 0.4375}) {
-      const double angle = std::asin(std::sqrt(sin2));
-      was += energy([&](const LobeGeometry& g) { return evaluate(brdf, 0, g); }, angle);
-      is += energy([&](const LobeGeometry& g) { return evaluate(material, g)[0]; }, angle);
-    }
-    EXPECT_NEAR(is, was, 0.1 * was) << exponent;  // the lobes differ in shape, GGX with longer tails
+    const Energies fitted = mean_energies(brdf, material, 0.0, 0.5), beyond = mean_energies(brdf, material, 0.5, 1.0);
+    EXPECT_NEAR(fitted.is, fitted.was, kWithinFitted * fitted.was) << exponent;
+    EXPECT_LT(beyond.is - beyond.was, kMostExcessBeyond * beyond.was) << exponent;
+    EXPECT_LT(fitted.is + beyond.is - fitted.was - beyond.was, kMostExcessOverall * (fitted.was + beyond.was)) << exponent;
   }
 }
 
@@ -103,7 +117,7 @@ TEST(Export, GltfStatesTheLossAndItsBufferIsWhole) {
   const std::filesystem::path out = folder.path() / "gltf";
   const Model model = model_of(sphere_mesh(40, 20), 4, 4, with_lobe(BrdfFamily::Ggx, 0.1, std::log(0.2), 2.0 * std::log(0.5)));
   NoProgress quiet;
-  const ConversionLoss loss = export_gltf(model, out, quiet);
+  const ConversionLoss loss = export_model(model, ExportFormat::Gltf, out, quiet);
   EXPECT_GT(loss.error.psnr_db, 38.0);  // 8 bits and the diffuse light's fall alone stand between the two
   std::ifstream file(out / "model.gltf");
   const nlohmann::json document = nlohmann::json::parse(file);
@@ -111,7 +125,7 @@ TEST(Export, GltfStatesTheLossAndItsBufferIsWhole) {
   EXPECT_EQ(document.at("buffers").at(0).at("byteLength"), std::filesystem::file_size(out / "model.bin"));
   EXPECT_EQ(document.at("accessors").at(0).at("count"), model.mesh.positions.size());
   EXPECT_EQ(read_raster(out / "base.png").code_values.at(1, 1, 0), std::round(255.0f * refit_maps(model, quiet).base.at(1, 1, 0)));
-  EXPECT_THROW(export_gltf(model, out, quiet), BadInput) << "nothing is overwritten";
+  EXPECT_THROW(export_model(model, ExportFormat::Gltf, out, quiet), BadInput) << "nothing is overwritten";
 }
 
 }  // namespace
