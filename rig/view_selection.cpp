@@ -40,6 +40,26 @@ std::vector<std::string> items_of(std::string_view list) {
   return items;
 }
 
+// Extensions of photographs only: "pose.1" and "pose.2" are two views.
+std::string without_extension(const std::string& name) {
+  static const std::set<std::string> kPhotographs{".exr", ".png", ".tif", ".tiff", ".pgm", ".dng"};
+  const std::filesystem::path path(name);
+  return kPhotographs.contains(path.extension().string()) ? path.stem().string() : name;
+}
+
+std::optional<std::size_t> find_view(const std::string& option, const std::string& typed, const std::vector<std::string>& names) {
+  if (const auto exact = std::find(names.begin(), names.end(), typed); exact != names.end()) return exact - names.begin();
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    // Two extensions that differ are two photographs.
+    const bool same = without_extension(names[i]) == typed || names[i] == without_extension(typed);
+    if (!same) continue;
+    if (found) throw BadInput(option, "'" + typed + "' could be " + names[*found] + " or " + names[i], "a view's whole name");
+    found = i;
+  }
+  return found;
+}
+
 // One option's value, taken apart.
 class Reader {
  public:
@@ -68,19 +88,10 @@ class Reader {
     throw BadInput(option_, what, expected);
   }
 
-  std::optional<std::size_t> named(const std::string& item) const {
-    std::optional<std::size_t> found;
-    for (std::size_t i = 0; i < views_.size(); ++i) {
-      if (views_[i].name == item) return i;
-      if (std::filesystem::path(views_[i].name).stem() != item) continue;
-      if (found) fail("'" + item + "' could be " + views_[*found].name + " or " + views_[i].name, "a view's whole name");
-      found = i;
-    }
-    return found;
-  }
-
   void add_views(const std::string& item, Indices& indices) const {
-    if (const auto index = named(item)) {
+    std::vector<std::string> names;
+    for (const SelectableView& view : views_) names.push_back(view.name);
+    if (const auto index = find_view(option_, item, names)) {
       indices.insert(*index);
       return;
     }
@@ -107,6 +118,13 @@ class Reader {
 };
 
 }  // namespace
+
+std::size_t view_named(const std::string& option, const std::string& typed, const std::vector<std::string>& names) {
+  if (const auto found = find_view(option, typed, names)) return *found;
+  std::string known;
+  for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
+  throw BadInput(option, "no view '" + typed + "'", "one of " + known);
+}
 
 ViewSelection select_views(const std::vector<SelectableView>& views, const SelectionOptions& options) {
   ViewSelection selection;

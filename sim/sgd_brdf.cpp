@@ -106,6 +106,18 @@ SgdBrdf sgd_from_table(std::string_view csv, const std::string& material, const 
           column("kap"),  column("lambda"), column("c"), column("k"), column("theta0")};
 }
 
+std::vector<std::string> sgd_table_names(std::string_view csv) {
+  std::stringstream stream{std::string(csv)};
+  std::vector<std::string> names;
+  bool header = true;
+  for (std::string line; std::getline(stream, line);) {
+    if (line.empty() || line.front() == '#') continue;
+    if (!header) names.push_back(split_at_commas(line).front());
+    header = false;
+  }
+  return names;
+}
+
 bool sgd_table_has(std::string_view csv, const std::string& material) {
   return find_row(csv, material).has_value();
 }

@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "processing/brdf/brdf.h"
 
@@ -27,6 +28,7 @@ Eigen::Array3d evaluate(const SgdBrdf& brdf, const LobeGeometry& geometry, doubl
 // The row `material` of a table in the authors' columns ("material,rhoD_r,rhoD_g,…"), '#' lines skipped.
 // Throws BadInput naming `where` if the row or a column is missing or is no number.
 SgdBrdf sgd_from_table(std::string_view csv, const std::string& material, const std::string& where);
+std::vector<std::string> sgd_table_names(std::string_view csv);  // of its rows, in order
 bool sgd_table_has(std::string_view csv, const std::string& material);
 
 // config/materials/merl_sgd_selected.csv as it was when the program was built.

@@ -46,10 +46,18 @@ void ModelSurface::add_texels(const Eigen::Vector2d& texcoord, TexturedPoint& po
 }
 
 bool ModelSurface::sees(const TexturedPoint& point, const Light& light) const {
-  const Eigen::Vector3d start = point.position_in_world + scene_.surface_offset_m() * point.geometric_normal;
+  const Eigen::Vector3d start = start_above(point);
   const double distance_m = light.type == Light::Type::Point ? (light.vector_in_world - start).norm()
                                                              : std::numeric_limits<double>::infinity();
   return !scene_.occluded(start, light.direction_from(start), 0.0, distance_m);
+}
+
+bool ModelSurface::sees_sky(const TexturedPoint& point, const Eigen::Vector3d& direction) const {
+  return !scene_.occluded(start_above(point), direction, 0.0, std::numeric_limits<double>::infinity());
+}
+
+Eigen::Vector3d ModelSurface::start_above(const TexturedPoint& point) const {
+  return point.position_in_world + scene_.surface_offset_m() * point.geometric_normal;
 }
 
 Eigen::Vector3d ModelSurface::shading_normal(const TexelShare& texel, const TexturedPoint& point) const {

@@ -33,6 +33,10 @@ class ModelSurface {
   // Nothing between the point and the light. The shadow ray starts a hair above the triangle, on the side of its
   // geometric normal, so that a triangle that faces away from the light shades itself.
   bool sees(const TexturedPoint& point, const Light& light) const;
+  // The same of the sky in a direction.
+  bool sees_sky(const TexturedPoint& point, const Eigen::Vector3d& direction) const;
+  // Where a ray starts that leaves the surface: that hair above the triangle.
+  Eigen::Vector3d start_above(const TexturedPoint& point) const;
   // Of the texel; the interpolated vertex normal where the texel has none.
   Eigen::Vector3d shading_normal(const TexelShare& texel, const TexturedPoint& point) const;
 

@@ -8,6 +8,7 @@ namespace lumitexel {
 namespace {
 
 constexpr const char* kReferenceSetting = "reference";
+constexpr const char* kPaperSetting = "paper";
 
 // 10,000 learning lumitexels, one lobe, Lafortune lobes, errors by left-out samples and all views are the standard preset itself.
 std::vector<TradeoffSetting> all_settings(int materials) {
@@ -27,7 +28,7 @@ std::vector<TradeoffSetting> all_settings(int materials) {
   add("errors-given", "30 % errors everywhere, nothing estimated").options.errors = ErrorSource::Given;
   add("lobes-2", "up to two lobes a material").options.most_lobes = 2;
   add("ggx", "GGX lobes").options.family = BrdfFamily::Ggx;
-  FitOptions& paper = add("paper", "clustering, fits and projection as published").options;
+  FitOptions& paper = add(kPaperSetting, "clustering, fits and projection as published").options;
   paper = as_published(paper);
   for (const std::size_t views : {16u, 12u, 8u}) {
     const std::string number = std::to_string(views);
@@ -42,7 +43,7 @@ void require_known(const std::vector<TradeoffSetting>& settings, const std::vect
   for (const TradeoffSetting& setting : settings) known += (known.empty() ? "" : ", ") + setting.name;
   for (const std::string& name : names) {
     const bool found = std::any_of(settings.begin(), settings.end(), [&](const auto& setting) { return setting.name == name; });
-    if (!found) throw BadInput("--only", "'" + name + "'", "of " + known);
+    if (!found) throw BadInput("--only", "'" + name + "'", "one of " + known);
   }
 }
 
@@ -51,6 +52,12 @@ void require_known(const std::vector<TradeoffSetting>& settings, const std::vect
 std::vector<TradeoffSetting> tradeoff_settings(int materials, bool full, const std::vector<std::string>& only) {
   std::vector<TradeoffSetting> settings = all_settings(materials);
   require_known(settings, only);
+  if (materials == 0) {
+    if (std::find(only.begin(), only.end(), kPaperSetting) != only.end()) {
+      throw BadInput("--materials", "auto with --only paper", "a number: the paper does not choose it");
+    }
+    std::erase_if(settings, [](const TradeoffSetting& setting) { return setting.name == kPaperSetting; });
+  }
   std::erase_if(settings, [&](const TradeoffSetting& setting) {
     if (setting.name == kReferenceSetting && full) return false;
     if (only.empty()) return setting.name == kReferenceSetting;

@@ -19,6 +19,7 @@ struct TradeoffSetting {
 
 // The presets, and the standard preset with one thing changed at a time. `only`: these and no others, in the list's order;
 // if empty, all but the reference preset. `full`: the reference preset too. Throws BadInput on a name that is not in the list, and lists them.
+// materials 0: each fit as many as its samples ask for; the paper's method needs a number and is left out then, or BadInput if it is asked for.
 std::vector<TradeoffSetting> tradeoff_settings(int materials, bool full, const std::vector<std::string>& only);
 
 }  // namespace lumitexel

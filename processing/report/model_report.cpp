@@ -9,6 +9,17 @@
 
 namespace lumitexel {
 
+std::string report_json(const ReportSubject& subject) {
+  using Json = nlohmann::json;
+  const bool compared = subject.session != nullptr && subject.evaluation != nullptr;
+  const Json data = {{"evaluation", compared ? Json::parse(evaluation_json(*subject.evaluation)) : Json(nullptr)},
+                     {"provenance", Json::parse(subject.model.provenance_json)},
+                     {"texels_by_material", texels_by_material(subject.model)},
+                     {"coverage", coverage_json(subject.model)},
+                     {"nearest_materials", nearest_json(subject)}};
+  return data.dump(1);
+}
+
 std::string model_report(const ReportSubject& subject, Progress& progress) {
   using Json = nlohmann::json;
   const Json provenance = Json::parse(subject.model.provenance_json);
@@ -27,14 +38,12 @@ std::string model_report(const ReportSubject& subject, Progress& progress) {
   body += sample_error_section(provenance);
   if (compared) body += photograph_error_section(*subject.evaluation);
   body += material_section(subject, renderer);
+  body += nearest_section(nearest_json(subject));
+  body += coverage_section(subject.model, renderer, map_view(subject));
   body += outlier_section(provenance);
   if (subject.session != nullptr) body += setup_section(*subject.session);
   body += timing_section(provenance) + definitions_section();
-
-  const Json data = {{"evaluation", compared ? Json::parse(evaluation_json(*subject.evaluation)) : Json(nullptr)},
-                     {"provenance", provenance},
-                     {"texels_by_material", texels_by_material(subject.model)}};
-  return html::page(subject.name + " – Lumitexel report", kPageStyle, body, data.dump(1));
+  return html::page(subject.name + " – Lumitexel report", kPageStyle, body, report_json(subject));
 }
 
 }  // namespace lumitexel

@@ -1,9 +1,10 @@
 // What a fit found, as one page for people: a single HTML file that needs nothing else, not even a network.
 #pragma once
 
-#include <optional>
+#include <span>
 #include <string>
 
+#include "processing/brdf/nearest_material.h"
 #include "processing/calibration/calibrated_session.h"
 #include "processing/model/evaluate_model.h"
 #include "processing/model/model.h"
@@ -17,11 +18,13 @@ struct ReportSubject {
   // The photographs to compare with, and what the comparison found; without them the page says what is left out.
   const CalibratedSession* session = nullptr;
   const Evaluation* evaluation = nullptr;
+  std::span<const KnownMaterial> known{};  // measured materials to name the nearest of
 };
 
 // The page. Every number on it is also in its <script type="application/json" id="data">: {"evaluation": as
 // `lumitexel evaluate --json` or null, "provenance": the fit's, "texels_by_material": [texels that were fitted to
-// samples]}.
+// samples], "coverage": of the texels and their sigma, "nearest_materials": [three for each material]}.
+std::string report_json(const ReportSubject& subject);
 std::string model_report(const ReportSubject& subject, Progress& progress);
 
 }  // namespace lumitexel

@@ -52,18 +52,6 @@ std::string comparison(const View& view, const ViewPictures& pictures, const Vie
          "</div>\n";
 }
 
-// As the first photograph shown sees the object, but filling the picture.
-View map_view(const ReportSubject& subject) {
-  const Mesh& mesh = subject.model.mesh;
-  Eigen::Vector3d towards_camera(0.4, -1.0, 0.5), up = Eigen::Vector3d::UnitZ();
-  if (subject.session != nullptr && !subject.session->views.empty()) {
-    const View& view = subject.session->views[views_to_show(subject.session->views).front()];
-    towards_camera = -view.camera_from_world.inverse().linear().col(2);
-    up = -view.camera_from_world.inverse().linear().col(1);
-  }
-  return framing_view(mesh, subject.model.channels, kMapSize_px, towards_camera, up);
-}
-
 std::string lobe_text(const Brdf& brdf) {
   std::string text = "diffuse albedo ";
   for (int c = 0; c < brdf.channels; ++c) {
@@ -119,6 +107,17 @@ std::string sphere_figures(const Model& model) {
 }
 
 }  // namespace
+
+View map_view(const ReportSubject& subject) {
+  const Mesh& mesh = subject.model.mesh;
+  Eigen::Vector3d towards_camera(0.4, -1.0, 0.5), up = Eigen::Vector3d::UnitZ();
+  if (subject.session != nullptr && !subject.session->views.empty()) {
+    const View& view = subject.session->views[views_to_show(subject.session->views).front()];
+    towards_camera = -view.camera_from_world.inverse().linear().col(2);
+    up = -view.camera_from_world.inverse().linear().col(1);
+  }
+  return framing_view(mesh, subject.model.channels, kMapSize_px, towards_camera, up);
+}
 
 std::string comparison_section(const ReportSubject& subject, const ViewRenderer& renderer, Progress& progress) {
   const auto& views = subject.session->views;

@@ -24,6 +24,17 @@ std::string definitions_section();
 // ---- pictures (report_pictures.cpp)
 std::string comparison_section(const ReportSubject& subject, const ViewRenderer& renderer, Progress& progress);
 std::string material_section(const ReportSubject& subject, const ViewRenderer& renderer);
+View map_view(const ReportSubject& subject);  // as the first photograph shown sees the object, filling the picture
 std::string setup_section(const CalibratedSession& session);
+
+// ---- coverage and uncertainty (report_maps.cpp)
+// {"texels", "texels_measured", "samples_a_texel": {"tenth", "median", "most"}, "relative_sigma": {"median", "nine_tenths"}}, over the texels
+// that were fitted to samples; null where there are none. "texels" have a material, the filled-in margin of the patches included.
+nlohmann::json coverage_json(const Model& model);
+std::string coverage_section(const Model& model, const ViewRenderer& renderer, const View& view);
+
+// ---- known materials (report_nearest.cpp)
+nlohmann::json nearest_json(const ReportSubject& subject);  // a list a material, the three nearest: {"name", "distance"}
+std::string nearest_section(const nlohmann::json& nearest);   // empty where none is known
 
 }  // namespace lumitexel

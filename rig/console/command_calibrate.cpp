@@ -11,6 +11,8 @@
 #include "processing/report/calibration_report.h"
 #include "rig/console/calibration_truth.h"
 #include "rig/console/command.h"
+#include "rig/console/input_folder.h"
+#include "rig/console/named_value.h"
 
 namespace lumitexel {
 namespace {
@@ -193,6 +195,30 @@ void describe(const CalibratedSession& session, const CalibrationSummary& summar
   }
 }
 
+const char* meaning(CalibrationStep step) {
+  switch (step) {
+    case CalibrationStep::PhotonTransfer: return "the sensor's noise from the frames";
+    case CalibrationStep::Response: return "its curve";
+    case CalibrationStep::DarkScale: return "darks scaled to the frames' temperature";
+    case CalibrationStep::Lens: return "the lens from boards, of an import from masks";
+    case CalibrationStep::Vignetting: return "its shading from flat fields";
+    case CalibrationStep::Pose: return "the object's place from silhouettes and tags";
+    case CalibrationStep::Joint: return "lens and poses once more with the highlights";
+    case CalibrationStep::CardPose: return "the gray card's place from its tags";
+    case CalibrationStep::LampDrift: return "the lamp's output in every view";
+    case CalibrationStep::LampPattern: return "its output by direction";
+  }
+  return "";
+}
+
+std::string step_help() {
+  std::string text;
+  for (const CalibrationStep step : all_calibration_steps()) {
+    text += std::string(text.empty() ? "" : "; ") + to_string(step) + " (" + meaning(step) + ")";
+  }
+  return text;
+}
+
 void write_text(const std::string& path, const std::string& content) {
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
   file << content;
@@ -209,13 +235,13 @@ void copy_lens_file(const fs::path& derived, const std::string& out) {
 
 CalibrationOptions steps_of(const CalibrateOptions& options) {
   CalibrationOptions steps;
-  for (const std::string& name : options.without) steps.without.insert(calibration_step_from_string(name));
+  for (const std::string& name : options.without) steps.without.insert(named_value("--without", name, words_by_to_string(all_calibration_steps())));
   return steps;
 }
 
 CommandResult run(const CalibrateOptions& options, CommandContext& context) {
   const CalibrationOptions steps = steps_of(options);
-  const SessionStore store = SessionStore::open(options.session, OpenMode::ReadOnly);
+  const SessionStore store = session_given("SESSION", options.session);
   CalibrationSummary summary;
   const CalibratedSession session = calibrate_session(store, context.progress, &summary, steps);
   CommandResult result;
@@ -245,9 +271,11 @@ void add_calibrate_command(CLI::App& app, CommandAction& action) {
   command->add_option("SESSION", options->session, "The session's folder")->required();
   command->add_option("--page", options->page, "Writes what was found as one HTML page, with pictures");
   command->add_option("--lens-out", options->lens_out, "Writes the lens calibration, for capture --lens");
-  std::string steps;
-  for (const CalibrationStep step : all_calibration_steps()) steps += std::string(steps.empty() ? "" : ", ") + to_string(step);
-  command->add_option("--without", options->without, "Leaves a step out, to see what it is worth: " + steps)->delimiter(',');
+  command
+      ->add_option("--without", options->without,
+                   "Leaves steps out, to see what they are worth, several by commas. STEP is one of " + step_help())
+      ->type_name("STEP")
+      ->delimiter(',');
   command->callback(
       [options, &action] { action = [options](CommandContext& context) { return run(*options, context); }; });
 }

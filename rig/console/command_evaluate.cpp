@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "processing/model/evaluate_model.h"
-#include "processing/model/model_file.h"
 #include "rig/console/command.h"
+#include "rig/console/input_folder.h"
 
 namespace lumitexel {
 namespace {
@@ -59,8 +59,8 @@ std::string evaluation_text(const Evaluation& evaluation, const nlohmann::json& 
 }
 
 CommandResult evaluate_command(const EvaluateSettings& settings, CommandContext& context) {
-  const Model model = read_model(settings.model);
-  const SessionStore store = SessionStore::open(settings.session, OpenMode::ReadOnly);
+  const Model model = model_given("MODEL", settings.model);
+  const SessionStore store = session_given("SESSION", settings.session);
   const CalibratedSession session = calibrate_session(store, context.progress);
   const Evaluation evaluation = evaluate_model(model, session, context.progress);
   if (!evaluation.same_session) {

@@ -9,6 +9,8 @@
 #include "processing/brdf/paper_clustering.h"
 #include "rig/console/command.h"
 #include "rig/console/experiment_page.h"
+#include "rig/console/materials_option.h"
+#include "rig/console/named_value.h"
 #include "rig/whole_file.h"
 
 namespace lumitexel {
@@ -16,33 +18,51 @@ namespace {
 
 struct ExperimentSettings {
   int seeds = 20, first_seed = 1;
-  bool paper = false, automatic = false;
+  std::string method = "lumitexel", materials = "5";
   std::vector<std::string> only;
   std::string page;
 };
 
+std::string setting_names() {
+  std::string names;
+  for (const ExperimentRow& row : experiment_settings()) names += (names.empty() ? "'" : ", '") + row.name + "'";
+  return names;
+}
+
 // throws BadInput
 std::vector<ExperimentRow> chosen_rows(const std::vector<std::string>& names) {
   std::vector<ExperimentRow> chosen;
-  std::string known;
   for (const ExperimentRow& row : experiment_settings()) {
     if (names.empty() || std::find(names.begin(), names.end(), row.name) != names.end()) chosen.push_back(row);
-    known += (known.empty() ? "'" : ", '") + row.name + "'";
   }
   for (const std::string& name : names) {
     const bool exists = std::any_of(chosen.begin(), chosen.end(), [&](const ExperimentRow& row) { return name == row.name; });
-    if (!exists) throw BadInput("--only", "'" + name + "'", known);
+    if (!exists) throw BadInput("--only", "'" + name + "'", "one of " + setting_names());
   }
   return chosen;
 }
 
-Clustering cluster(const FiveMaterials& world, const ExperimentSettings& settings) {
+// How the worlds are clustered; materials 0: as many as the samples ask for.
+struct Way {
+  bool paper;
+  int materials;
+};
+
+// throws BadInput
+Way chosen_way(const ExperimentSettings& settings) {
+  const Way way{named_value<bool>("--method", settings.method, {{"lumitexel", false}, {"paper", true}}),
+                materials_wanted("--materials", settings.materials)};
+  if (way.paper && way.materials == 0) throw BadInput("--materials", "auto with --method paper", "a number: the paper does not choose it");
+  return way;
+}
+
+Clustering cluster(const FiveMaterials& world, const Way& way) {
   LumitexelList all(world.label.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   const auto quiet = [](int) {};
-  if (settings.paper) return paper_clustering(world.observations, all, {5, 1, 0.3, all.size()}, quiet);
+  if (way.paper) return paper_clustering(world.observations, all, {way.materials, 1, 0.3, all.size()}, quiet);
   ClusterOptions options;
-  options.materials = settings.automatic ? 0 : 5;
+  options.materials = way.materials;
   options.final_lumitexels = all.size();
   return cluster_materials(world.observations, all, options, quiet);
 }
@@ -87,6 +107,7 @@ constexpr const char* kTableFoot =
 
 CommandResult experiment_command(const ExperimentSettings& settings, CommandContext& context) {
   std::vector<ExperimentRow> rows = chosen_rows(settings.only);
+  const Way way = chosen_way(settings);
   CommandResult result;
   result.json = nlohmann::json::array();
   result.text = kTableHead;
@@ -94,7 +115,7 @@ CommandResult experiment_command(const ExperimentSettings& settings, CommandCont
     context.progress.begin(row.name, settings.seeds, "seeds");
     for (int seed = 0; seed < settings.seeds; ++seed) {
       const FiveMaterials world = make_five_materials(static_cast<std::uint64_t>(settings.first_seed + seed), row.options);
-      row.scores.push_back(score(world, cluster(world, settings)));
+      row.scores.push_back(score(world, cluster(world, way)));
       context.progress.update(seed + 1);
     }
     result.text += row_text(row);
@@ -116,10 +137,13 @@ void add_experiment_command(CLI::App& app, CommandAction& action) {
       "experiment", "The paper's synthetic experiment: five materials under noise, clustered over many seeds, against the best possible");
   command->add_option("--seeds", settings->seeds, "Seeds for each setting")->check(CLI::Range(1, 100000))->capture_default_str();
   command->add_option("--first-seed", settings->first_seed, "The first of them")->capture_default_str();
-  command->add_option("--only", settings->only, "These settings only, by the names in the table");
+  command->add_option("--only", settings->only, "These settings only: " + setting_names())->type_name("NAME");
   command->add_option("--page", settings->page, "HTML file to write, with drawings of lobes, errors and labels");
-  command->add_flag("--paper", settings->paper, "Cluster as published instead");
-  command->add_flag("--auto", settings->automatic, "Do not tell the number of materials");
+  command->add_option("--method", settings->method, "lumitexel, or paper: clustering as published")->capture_default_str();
+  command->add_option("--materials", settings->materials, "How many materials to look for, 1 to 64, or auto: as many as the samples ask for")
+      ->capture_default_str();
+  command->add_flag_callback("--paper", [settings] { settings->method = "paper"; }, "The same as --method paper");
+  command->add_flag_callback("--auto", [settings] { settings->materials = "auto"; }, "The same as --materials auto");
   command->callback([settings, &action] {
     action = [settings](CommandContext& context) { return experiment_command(*settings, context); };
   });

@@ -1,4 +1,3 @@
-#include <charconv>
 #include <cstdio>
 #include <memory>
 
@@ -7,11 +6,12 @@
 #include "processing/model/fit_model.h"
 #include "processing/model/model_file.h"
 #include "rig/console/command.h"
+#include "rig/console/input_folder.h"
+#include "rig/console/materials_option.h"
+#include "rig/console/named_value.h"
 
 namespace lumitexel {
 namespace {
-
-constexpr int kMostMaterials = 64;
 
 struct FitSettings {
   std::string session, out, quality = "standard", materials = "4", method = "lumitexel", family = "lafortune", errors = "auto";
@@ -20,36 +20,22 @@ struct FitSettings {
   bool separate_lobes = false, plain_projection = false, principal_functions = false;
 };
 
-constexpr std::pair<const char*, FitMethod> kMethods[] = {{"lumitexel", FitMethod::Lumitexel}, {"paper", FitMethod::Paper}};
-constexpr std::pair<const char*, ErrorSource> kErrors[] = {
-    {"auto", ErrorSource::Auto}, {"given", ErrorSource::Given}, {"labels", ErrorSource::Labels}, {"estimated", ErrorSource::Estimated}};
+template <typename Value>
+using Words = std::vector<std::pair<std::string, Value>>;
 
-template <typename Value, std::size_t kCount>
-Value named(const char* option, const std::string& name, const std::pair<const char*, Value> (&known)[kCount]) {
-  std::string expected;
-  for (const auto& [word, value] : known) {
-    if (name == word) return value;
-    expected += (expected.empty() ? "" : " or ") + std::string(word);
-  }
-  throw BadInput(option, "'" + name + "'", expected);
-}
-
-int materials_wanted(const std::string& text) {
-  if (text == "auto") return 0;
-  int count = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
-  if (error != std::errc() || end != text.data() + text.size() || count < 1 || count > kMostMaterials) {
-    throw BadInput("--materials", "'" + text + "'", "a whole number from 1 to 64, or auto");
-  }
-  return count;
+Words<std::string> quality_words() { return {{"draft", "draft"}, {"standard", "standard"}, {"reference", "reference"}}; }
+Words<FitMethod> method_words() { return {{"lumitexel", FitMethod::Lumitexel}, {"paper", FitMethod::Paper}}; }
+Words<BrdfFamily> family_words() { return words_by_to_string(std::vector{BrdfFamily::Lafortune, BrdfFamily::Ggx, BrdfFamily::Ward}); }
+Words<ErrorSource> error_words() {
+  return words_by_to_string(std::vector{ErrorSource::Auto, ErrorSource::Given, ErrorSource::Labels, ErrorSource::Estimated});
 }
 
 FitOptions fit_options(const FitSettings& settings) {
-  FitOptions options = FitOptions::preset(settings.quality);
-  options.materials = materials_wanted(settings.materials);
-  options.method = named("--method", settings.method, kMethods);
-  options.family = brdf_family_from_string(settings.family);
-  options.errors = named("--errors", settings.errors, kErrors);
+  FitOptions options = FitOptions::preset(named_value("--quality", settings.quality, quality_words()));
+  options.materials = materials_wanted("--materials", settings.materials);
+  options.method = named_value("--method", settings.method, method_words());
+  options.family = named_value("--family", settings.family, family_words());
+  options.errors = named_value("--errors", settings.errors, error_words());
   options.most_lobes = settings.lobes;
   options.intensity_weight = settings.intensity_weight;
   options.principal_functions = settings.principal_functions;
@@ -105,11 +91,29 @@ std::string outlier_line(const Outliers& outliers) {
   return line("%zu samples are not explained", all) + reasons + " (the worst: outliers.csv)\n";
 }
 
+const char* meaning(ErrorSource errors) {
+  switch (errors) {
+    case ErrorSource::Labels: return "estimated for telling materials apart, given for fitting them";
+    case ErrorSource::Estimated: return "what each material's residuals say";
+    case ErrorSource::Given: return "30 % of each prediction and of the median";
+    case ErrorSource::Auto: break;
+  }
+  return "";
+}
+
+// The paper's method has an error of its own (its eq. 6) and asks for none.
+std::string error_line(const FitSettings& settings, const FitSummary& summary) {
+  if (settings.method == "paper") return "";
+  return line("errors: %s (%s)%s\n", to_string(summary.errors), meaning(summary.errors),
+              settings.errors == "auto" ? ", which predicted left-out samples best" : ", as told");
+}
+
 std::string fit_text(const FitSettings& settings, const FitSummary& summary) {
   std::string text = line("%s: %zu materials, %zu lumitexels, %zu samples (%.1f a lumitexel; %zu lumitexels have none)\n",
                           settings.out.c_str(), summary.texels_by_material.size(), summary.lumitexels, summary.samples,
                           static_cast<double>(summary.samples) / static_cast<double>(summary.lumitexels), summary.starved);
   if (summary.unseen_triangles > 0) text += line("  %zu triangles are seen by no view\n", summary.unseen_triangles);
+  text += error_line(settings, summary);
   text += rms_table(summary);
   text += outlier_line(summary.outliers);
   text += "Stage            seconds   peak MB\n";
@@ -122,7 +126,7 @@ std::string fit_text(const FitSettings& settings, const FitSummary& summary) {
 CommandResult fit_command(const FitSettings& settings, CommandContext& context) {
   const FitOptions options = fit_options(settings);
   check_model_directory(settings.out);
-  const SessionStore store = SessionStore::open(settings.session, OpenMode::ReadOnly);
+  const SessionStore store = session_given("SESSION", settings.session);
   StageTimer timer;
   timer.begin("calibration");
   const CalibratedSession session = calibrate_session(store, context.progress);
@@ -149,7 +153,7 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
   command->add_option("--method", settings->method,
                       "lumitexel, or paper: clustering, fits and projection as published (Lensch et al. 2003), for comparison")
       ->capture_default_str();
-  command->add_option("--family", settings->family, "Lobes of this family: lafortune, ggx or ward")->capture_default_str();
+  command->add_option("--family", settings->family, "Lobes of this family: " + words_of(family_words()))->capture_default_str();
   command->add_option("--lobes", settings->lobes, "Most lobes of a material; each must be asked for by its samples")
       ->check(CLI::Range(0, 3))
       ->capture_default_str();

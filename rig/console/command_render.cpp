@@ -1,53 +1,37 @@
 #include <memory>
+#include <optional>
 
 #include "drivers/error.h"
 #include "processing/image/exr_file.h"
 #include "processing/image/raster_file.h"
 #include "processing/image/tone_map.h"
 #include "processing/model/image_error.h"
-#include "processing/model/model_file.h"
-#include "processing/model/render_view.h"
+#include "processing/render/carry_model.h"
+#include "processing/render/render_lit.h"
+#include "processing/render/splat.h"
+#include "processing/surface/mesh_file.h"
 #include "rig/console/command.h"
-#include "rig/console/view_options.h"
+#include "rig/console/input_folder.h"
+#include "rig/console/named_value.h"
+#include "rig/console/render_settings.h"
+#include "rig/view_selection.h"
 
 namespace lumitexel {
 namespace {
 
 constexpr double kWhiteFraction = 0.99;  // of the preview: the brightest hundredth may clip
 
-struct RenderSettings {
-  std::string model, out, png, session, view, stage, aov = "radiance";
-  ViewOptions given;
-  int samples_per_pixel = 1;
-};
+std::vector<std::pair<std::string, Aov>> aov_words() {
+  return {{"radiance", Aov::Radiance}, {"normal", Aov::Normal}, {"position", Aov::Position},
+          {"cluster", Aov::Cluster},   {"samples", Aov::Samples}, {"sigma", Aov::Sigma}};
+}
 
 View view_of_session(const RenderSettings& settings, Progress& progress) {
-  const SessionStore store = SessionStore::open(settings.session, OpenMode::ReadOnly);
+  const SessionStore store = session_given("--session", settings.session);
   const CalibratedSession session = calibrate_session(store, progress);
-  std::string names;
-  for (const View& view : session.views) {
-    if (view.name == settings.view) return view;
-    names += (names.empty() ? "" : ", ") + view.name;
-  }
-  throw BadInput("--view", "'" + settings.view + "'", "one of " + names);
-}
-
-void require_one_way(const RenderSettings& settings) {
-  const bool by_session = !settings.session.empty() && !settings.view.empty();
-  const bool by_camera = !settings.given.camera.empty() && !settings.given.light.empty();
-  const bool mixed = !(settings.session.empty() && settings.view.empty()) && !settings.given.camera.empty();
-  if (by_session == by_camera || mixed) {
-    throw BadInput("render", "no single view", "either --session and --view, or --camera and --light");
-  }
-}
-
-void require_options_that_act(const RenderSettings& settings, Aov aov) {
-  if (aov != Aov::Radiance && (!settings.stage.empty() || settings.samples_per_pixel != 1 || !settings.png.empty())) {
-    throw BadInput("--aov", "'" + settings.aov + "' with --stage, --spp or --png", "these with radiance only");
-  }
-  if (!settings.session.empty() && !(settings.given.light.empty() && settings.given.light_intensity.empty())) {
-    throw BadInput("--light", "given with --session", "the session's own light, or --camera");
-  }
+  std::vector<std::string> names;
+  for (const View& view : session.views) names.push_back(view.name);
+  return session.views[view_named("--view", settings.view, names)];
 }
 
 double preview_white(const Image& image) {
@@ -63,24 +47,67 @@ double preview_white(const Image& image) {
   return white > 0.0 ? white : 1.0;
 }
 
+struct Rendering {
+  Image image;
+  std::optional<LitView> lit;  // of the sampled renderer: how it went
+  std::optional<SplatView> points;
+};
+
+Rendering rendered(const RenderSettings& settings, const Model& model, Aov aov, Progress& progress) {
+  View view = settings.session.empty() ? parse_camera(settings.given) : view_of_session(settings, progress);
+  if (aov != Aov::Radiance) return {ViewRenderer(model).render_aov(view, aov), {}, {}};
+  Lighting lighting{parse_lamps(settings.given, model.channels), nullptr};
+  if (!settings.session.empty() && !settings.camera_only) lighting.lamps.insert(lighting.lamps.begin(), view.light);
+  const LitOptions options = lit_options(settings);
+  if (settings.splat) {
+    SplatView points = splat(model, view, lighting.lamps, options.stage);
+    return {points.radiance, {}, std::move(points)};
+  }
+  if (!settings.by_chance(lighting.lamps.size())) {
+    view.light = lighting.lamps.front();
+    return {ViewRenderer(model).render(view, {options.stage, settings.samples_per_pixel.value_or(1)}).radiance, {}, {}};
+  }
+  std::optional<Environment> sky;
+  if (!settings.environment.empty()) lighting.environment = &sky.emplace(environment_of(settings, model.channels));
+  LitView lit = render_lit(model, view, lighting, options, progress, SystemClock());
+  return {lit.radiance, std::move(lit), {}};
+}
+
+void add_outcome(const LitView& lit, CommandResult& result) {
+  result.json["samples_per_pixel"] = lit.samples_per_pixel;
+  result.json["noise"] = lit.noise ? nlohmann::json(*lit.noise) : nlohmann::json();
+  result.json["seconds"] = lit.seconds;
+  result.json["ended_by"] = to_string(lit.end);
+  result.json["dropped_samples"] = lit.dropped_samples;
+  result.text += std::to_string(lit.samples_per_pixel) + " samples a pixel in " + std::to_string(lit.seconds) + " s (" +
+                 to_string(lit.end) + "), noise " + (lit.noise ? std::to_string(*lit.noise) : "unknown") +
+                 " of the object's radiance\n";
+  if (lit.dropped_samples > 0) {
+    result.text += std::to_string(lit.dropped_samples) + " samples were not finite and count as black\n";
+  }
+}
+
+void add_outcome(const SplatView& points, CommandResult& result) {
+  result.json["points"] = points.points;
+  result.json["points_shown"] = points.shown;
+  result.text += std::to_string(points.shown) + " of " + std::to_string(points.points) + " points are seen\n";
+}
+
 CommandResult render_command(const RenderSettings& settings, CommandContext& context) {
-  require_one_way(settings);
-  const Aov aov = aov_from_string(settings.aov);
-  require_options_that_act(settings, aov);
-  const Model model = read_model(settings.model);
-  RenderOptions options;
-  if (!settings.stage.empty()) options.stage = fit_stage_from_string(settings.stage);
-  options.samples_per_pixel = settings.samples_per_pixel;
-  const View view = settings.session.empty() ? parse_view(settings.given, model.channels)
-                                             : view_of_session(settings, context.progress);
-  const ViewRenderer renderer(model);
-  const Image image = aov == Aov::Radiance ? renderer.render(view, options).radiance : renderer.render_aov(view, aov);
+  const Aov aov = named_value("--aov", settings.aov, aov_words());
+  check_render_settings(settings, aov);
+  Model model = model_given("MODEL", settings.model);
+  if (!settings.mesh.empty()) model = carried_to(std::move(model), read_mesh(settings.mesh), settings.mesh);
+  const Rendering rendering = rendered(settings, model, aov, context.progress);
+  const Image& image = rendering.image;
   write_exr_colour(settings.out, image, aov == Aov::Cluster ? ExrPixel::Uint : ExrPixel::Float);
 
   CommandResult result;
   result.json = {{"out", settings.out}, {"width", image.width}, {"height", image.height}, {"aov", settings.aov}};
   result.text = settings.out + ": " + std::to_string(image.width) + "x" + std::to_string(image.height) + " pixels, " +
                 settings.aov + "\n";
+  if (rendering.lit) add_outcome(*rendering.lit, result);
+  if (rendering.points) add_outcome(*rendering.points, result);
   if (!settings.png.empty()) {
     const double white = preview_white(image);
     write_png8(settings.png, tone_mapped(image, white));
@@ -95,25 +122,8 @@ CommandResult render_command(const RenderSettings& settings, CommandContext& con
 
 void add_render_command(CLI::App& app, CommandAction& action) {
   auto settings = std::make_shared<RenderSettings>();
-  CLI::App* command = app.add_subcommand("render", "Ray trace a model from a session's view or a camera of your own");
-  command->add_option("MODEL", settings->model, "Folder of the model")->required();
-  command->add_option("--out", settings->out, "EXR file to write: linear radiance, or the map asked for with --aov")
-      ->required();
-  command->add_option("--session", settings->session, "Session whose camera and light are taken, with --view");
-  command->add_option("--view", settings->view, "The view's name in the session");
-  command->add_option("--camera", settings->given.camera,
-                      "\"eye;target;up;fov;WxH\": three points x,y,z in metres, the vertical field of view in degrees, "
-                      "the size in pixels");
-  command->add_option("--light", settings->given.light, "Point light \"x,y,z\" in metres, with --camera");
-  command->add_option("--light-intensity", settings->given.light_intensity,
-                      "W/sr, one number or one a channel; default: white diffuse at the target has radiance 1");
-  command->add_option("--stage", settings->stage, "single (one BRDF for all), cluster (one a material), projection (a mixture a texel) or pfa (of principal functions, if "
-                      "the fit sought them); default: all that the model holds");
-  command->add_option("--aov", settings->aov, "radiance, normal, position, cluster, samples or sigma")
-      ->capture_default_str();
-  command->add_option("--spp", settings->samples_per_pixel, "Rays a pixel for radiance; 1 is the pixel's centre")
-      ->capture_default_str();
-  command->add_option("--png", settings->png, "Also write a tone-mapped preview");
+  CLI::App* command = app.add_subcommand("render", "Picture of a model from a session's view or a camera of your own: by rays, with bounces if asked, or by points");
+  add_render_options(*command, *settings);
   command->callback([settings, &action] {
     action = [settings](CommandContext& context) { return render_command(*settings, context); };
   });

@@ -2,6 +2,7 @@
 
 #include "processing/calibration/import/reduced_import.h"
 #include "rig/console/command.h"
+#include "rig/console/input_folder.h"
 #include "rig/console/replay_result.h"
 #include "rig/replay_session.h"
 
@@ -27,7 +28,7 @@ CommandResult copy_imported(const SessionStore& session, const ReplayOptions& op
 CommandResult run(const ReplayOptions& options, CommandContext& context) {
   SessionStore::require_new_directory(options.out);
   const auto recording =
-      std::make_shared<const SessionStore>(SessionStore::open(options.session, OpenMode::ReadOnly));
+      std::make_shared<const SessionStore>(session_given("SESSION", options.session));
   if (recording->kind() == SessionKind::Imported) return copy_imported(*recording, options, context);
   const ViewSelection selection = select_views(planned_views(*recording), options.selection);
   SessionStore replay = begin_replay(*recording, selection, options.out);

@@ -2,10 +2,11 @@
 #include <memory>
 #include <optional>
 
-#include "processing/model/model_file.h"
 #include "processing/report/model_report.h"
 #include "rig/console/command.h"
+#include "rig/console/input_folder.h"
 #include "rig/whole_file.h"
+#include "sim/sgd_brdf.h"
 
 namespace lumitexel {
 namespace {
@@ -21,12 +22,24 @@ std::string title_of(const fs::path& model) {
   return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
 }
 
+std::vector<KnownMaterial> measured_materials() {
+  std::vector<KnownMaterial> known;
+  for (const std::string& name : sgd_table_names(selected_sgd_table())) {
+    const SgdBrdf brdf = sgd_from_table(selected_sgd_table(), name, "the built-in SGD table");
+    known.push_back({name, [brdf](const LobeGeometry& geometry) {
+                       const Eigen::Array3d f = evaluate(brdf, geometry);
+                       return ChannelValues{f[0], f[1], f[2]};
+                     }});
+  }
+  return known;
+}
+
 CommandResult report_command(const ReportSettings& settings, CommandContext& context) {
-  const Model model = read_model(settings.model);
+  const Model model = model_given("MODEL", settings.model);
   std::optional<CalibratedSession> session;
   std::optional<Evaluation> evaluation;
   if (!settings.session.empty()) {
-    const SessionStore store = SessionStore::open(settings.session, OpenMode::ReadOnly);
+    const SessionStore store = session_given("--session", settings.session);
     session = calibrate_session(store, context.progress);
     evaluation = evaluate_model(model, *session, context.progress);
   }
@@ -35,12 +48,15 @@ CommandResult report_command(const ReportSettings& settings, CommandContext& con
     subject.session = &*session;
     subject.evaluation = &*evaluation;
   }
+  const std::vector<KnownMaterial> known = measured_materials();
+  if (model.channels == kMaxChannels) subject.known = known;
   const fs::path out = settings.out.empty() ? fs::path(settings.model) / "report.html" : fs::path(settings.out);
   const std::string page = model_report(subject, context.progress);
   write_whole_file(out, page);
 
   CommandResult result;
-  result.json = {{"out", out.string()}, {"bytes", page.size()}};
+  result.json = nlohmann::json::parse(report_json(subject));
+  result.json.update({{"out", out.string()}, {"bytes", page.size()}});
   result.text =
       out.string() + ": open it in a browser (" + std::to_string(page.size() / 1024) + " KiB, works offline)\n";
   return result;
@@ -54,7 +70,7 @@ void add_report_command(CLI::App& app, CommandAction& action) {
       app.add_subcommand("report", "One self-contained HTML page: pictures, errors, materials, timings");
   command->add_option("MODEL", settings->model, "Folder of the model")->required();
   command->add_option("--session", settings->session, "Session whose photographs are shown beside their re-renderings");
-  command->add_option("--out", settings->out, "HTML file to write (default: MODEL/report.html)");
+  command->add_option("--out,--page", settings->out, "HTML file to write (default: MODEL/report.html)");
   command->callback([settings, &action] {
     action = [settings](CommandContext& context) { return report_command(*settings, context); };
   });

@@ -3,6 +3,7 @@
 #include "drivers/error.h"
 #include "rig/console/capture_result.h"
 #include "rig/console/command.h"
+#include "rig/console/input_folder.h"
 #include "rig/console/replay_result.h"
 #include "rig/console/rig_backend.h"
 #include "rig/replay_session.h"
@@ -12,7 +13,7 @@ namespace lumitexel {
 namespace {
 
 CommandResult run(const std::string& directory, CommandContext& context) {
-  SessionStore session = SessionStore::open(directory, OpenMode::ReadWrite);
+  SessionStore session = session_given("SESSION", directory, OpenMode::ReadWrite);
   if (session.kind() != SessionKind::Captured) {
     throw BadInput(directory, "an imported session has nothing to resume", "a session made by `lumitexel capture`");
   }

@@ -7,6 +7,8 @@
 #include "processing/model/tradeoff.h"
 #include "processing/report/tradeoff_page.h"
 #include "rig/console/command.h"
+#include "rig/console/input_folder.h"
+#include "rig/console/materials_option.h"
 #include "rig/whole_file.h"
 
 namespace lumitexel {
@@ -15,8 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct TradeoffArguments {
-  std::string session, page;
-  int materials = 4;
+  std::string session, page, materials = "4";
   bool full = false;
   std::vector<std::string> only;
 };
@@ -71,9 +72,15 @@ std::string session_name(const fs::path& session) {
   return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
 }
 
+std::string setting_names() {
+  std::string names;
+  for (const TradeoffSetting& setting : tradeoff_settings(4, true, {})) names += (names.empty() ? "" : ", ") + setting.name;
+  return names;
+}
+
 CommandResult tradeoff_command(const TradeoffArguments& arguments, CommandContext& context) {
-  const auto settings = tradeoff_settings(arguments.materials, arguments.full, arguments.only);
-  const SessionStore store = SessionStore::open(arguments.session, OpenMode::ReadOnly);
+  const auto settings = tradeoff_settings(materials_wanted("--materials", arguments.materials), arguments.full, arguments.only);
+  const SessionStore store = session_given("SESSION", arguments.session);
   const CalibratedSession session = calibrate_session(store, context.progress);
   const Tradeoff tradeoff = measure_tradeoff(session, settings, context.progress);
   const std::string json = tradeoff_json(tradeoff);
@@ -94,9 +101,10 @@ void add_tradeoff_command(CLI::App& app, CommandAction& action) {
   CLI::App* command = app.add_subcommand(
       "tradeoff", "Speed against accuracy on this session: fits it with one setting after another, each judged by held-out photographs");
   command->add_option("SESSION", arguments->session, "Session to fit, with held-out views")->required();
-  command->add_option("--materials", arguments->materials, "Materials of every fit")->check(CLI::Range(1, 64))->capture_default_str();
-  command->add_flag("--full", arguments->full, "Also the reference preset, which learns on every surface point and takes long");
-  command->add_option("--only", arguments->only, "These settings only, by the names in the table");
+  command->add_option("--materials", arguments->materials, "Materials of every fit, 1 to 64, or auto, without the paper's then: it does not choose them")
+      ->capture_default_str();
+  command->add_flag("--reference,--full", arguments->full, "Also the reference preset, which learns on every surface point and takes long");
+  command->add_option("--only", arguments->only, "These settings only: " + setting_names())->delimiter(',')->type_name("NAME");
   command->add_option("--page", arguments->page, "HTML file to write, with a drawing of error against seconds");
   command->callback([arguments, &action] {
     action = [arguments](CommandContext& context) { return tradeoff_command(*arguments, context); };

@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "rig/console/command.h"
+#include "rig/console/input_folder.h"
 #include "rig/verify_session.h"
 
 namespace lumitexel {
@@ -10,7 +11,7 @@ namespace {
 constexpr int kNotOk = 1;
 
 CommandResult run(const std::string& directory, CommandContext& context) {
-  const SessionStore session = SessionStore::open(directory, OpenMode::ReadOnly);
+  const SessionStore session = session_given("SESSION", directory);
   const SessionVerdict verdict = verify_session(session, context.progress);
   CommandResult result;
   result.exit_code = verdict.ok() ? 0 : kNotOk;

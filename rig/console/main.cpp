@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -28,6 +29,7 @@ const std::vector<void (*)(CLI::App&, CommandAction&)> kCommands = {
     add_render_command,
     add_evaluate_command,
     add_tradeoff_command,
+    add_export_command,
     add_report_command,
     add_selftest_command,
 };
@@ -67,18 +69,45 @@ int run(const CommandAction& action, bool json, std::stop_token stop) {
   }
 }
 
+// On every command too, so that each one's help shows it.
+void add_json_flag(CLI::App& app, bool& json) {
+  constexpr const char* kMeaning = "Print a machine-readable result on stdout (logs stay on stderr)";
+  app.add_flag("--json", json, kMeaning);
+  for (CLI::App* command : app.get_subcommands({})) command->add_flag("--json", json, kMeaning);
+}
+
+std::string command_names(const CLI::App& app) {
+  std::string names;
+  for (const CLI::App* command : app.get_subcommands({})) names += (names.empty() ? "" : ", ") + command->get_name();
+  return names;
+}
+
+// The first argument that is no option, if no command is called so. Before the command all options are flags.
+std::string unknown_command(const CLI::App& app, int argc, char** argv) {
+  const auto is_option = [](const std::string& argument) { return argument.starts_with('-'); };
+  const auto word = std::find_if_not(argv + 1, argv + argc, is_option);
+  if (word == argv + argc) return "";
+  const auto commands = app.get_subcommands({});
+  const bool known = std::any_of(commands.begin(), commands.end(), [&](const CLI::App* command) { return command->get_name() == *word; });
+  return known ? "" : *word;
+}
+
 int main_function(int argc, char** argv) {
   CLI::App app{"Photographs an object on a rig and measures how it reflects light."};
   app.name("lumitexel");
   app.require_subcommand(1);
   app.fallthrough();
   bool json = false;
-  app.add_flag("--json", json, "Print a machine-readable result on stdout (logs stay on stderr)");
   CommandAction action;
   for (const auto add : kCommands) add(app, action);
+  add_json_flag(app, json);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    if (const std::string unknown = unknown_command(app, argc, argv); !unknown.empty()) {
+      std::cerr << "lumitexel: '" << unknown << "' is no command; expected one of " << command_names(app) << '\n';
+      return kBadInput;
+    }
     return app.exit(error) == 0 ? 0 : kBadInput;
   }
   return run(action, json, watches_for_stop(app) ? stop_on_interrupt() : std::stop_token{});

@@ -54,6 +54,34 @@ std::map<std::string, std::string> frames_of(const std::filesystem::path& sessio
   return frames;
 }
 
+// Rays and points, lamps and a sky (any picture of light will do: the model's own), on the model's mesh handed in again.
+void expect_pictures(const TemporaryFolder& folder, const std::string& model) {
+  const std::string sky = (folder / "sky.exr").string(), out = (folder / "out.exr").string();
+  const std::string render = "render " + model + " --camera \"0.4,0.3,0.3;0,0,0.05;0,0,1;30;48x32\" --json ";
+  const ProgramRun plain = run_program(render + "--light 0.5,-0.2,0.6 --out " + sky);
+  ASSERT_EQ(plain.exit_code, 0) << plain.errors;
+  EXPECT_FALSE(plain.json().contains("noise")) << "one lamp: nothing is left to chance";
+  const ProgramRun moved = run_program(render + "--light 0.5,-0.2,0.6 --mesh " + model + "/mesh.ply --out " + out);
+  ASSERT_EQ(moved.exit_code, 0) << moved.errors;
+  EXPECT_TRUE(text_of(out) == text_of(sky)) << "the model's own mesh changes nothing";
+  const ProgramRun lit = run_program(render + "--environment " + sky + " --directional 0,0,1 --bounces 1 --spp 3 --out " + out);
+  ASSERT_EQ(lit.exit_code, 0) << lit.errors;
+  EXPECT_EQ(lit.json().at("samples_per_pixel"), 3);
+  EXPECT_EQ(lit.json().at("ended_by"), "samples");
+  EXPECT_GT(lit.json().at("noise").get<double>(), 0.0);
+  const ProgramRun limited = run_program(render + "--environment " + sky + " --noise 0.2 --time-limit 60 --out " + out);
+  ASSERT_EQ(limited.exit_code, 0) << limited.errors;
+  EXPECT_EQ(limited.json().at("ended_by"), "noise") << limited.output;
+  const ProgramRun points = run_program(render + "--light 0.5,-0.2,0.6 --splat --out " + out);
+  ASSERT_EQ(points.exit_code, 0) << points.errors;
+  EXPECT_GT(points.json().at("points_shown").get<int>(), 1000);
+  const std::string wrongs[] = {"--splat --environment " + sky,   "--light 0,0,1 --environment-scale 2", "--light 0,0,1 --bounces -1",
+                                "--light 0,0,1 --mesh " + sky, "--light 0,0,1 --noise 0", ""};
+  for (const std::string& wrong : wrongs) {
+    EXPECT_EQ(run_program(render + wrong + " --out " + out).exit_code, 2) << wrong;
+  }
+}
+
 // Played back whole, by the command and as a rig of its own, a session is the same; a shorter one is a session, too.
 void expect_replays(const TemporaryFolder& folder, const std::string& session, const std::string& rig) {
   const auto frames = frames_of(session);
@@ -79,6 +107,9 @@ void expect_replays(const TemporaryFolder& folder, const std::string& session, c
                                      "evaluate " + shorter + "_model " + shorter}) {
     const ProgramRun run = run_program(command);
     EXPECT_EQ(run.exit_code, 0) << command << '\n' << run.errors;
+    if (command.starts_with("fit")) {
+      EXPECT_NE(run.output.find("which predicted left-out samples best"), std::string::npos) << run.output;
+    }
   }
   const ProgramRun unknown = run_program("replay " + session + " --out " + shorter + "2 --without view=99");
   EXPECT_EQ(unknown.exit_code, 2);
@@ -123,6 +154,7 @@ TEST(CapturedSession, BecomesAModelThatPredictsAHeldOutPhotograph) {
   EXPECT_LT(error("cluster"), 0.9 * error("single"));
   EXPECT_LT(error("projection"), 1.02 * error("cluster"));  // one photograph: equal within what a few pixels decide
 
+  expect_pictures(folder, model);
   expect_replays(folder, session, rig);
 
   const ProgramRun report = run_program("report " + model + " --session " + session);

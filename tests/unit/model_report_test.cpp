@@ -59,7 +59,7 @@ TEST_F(ModelReport, NeedsNothingButItself) {
   for (std::size_t at = html.find("src="); at != std::string::npos; at = html.find("src=", at + 1), ++pictures) {
     EXPECT_EQ(html.substr(at, 33), "src=\"data:image/png;base64,iVBORw") << "a PNG's first bytes";
   }
-  EXPECT_EQ(pictures, 5u) << "photograph, rendering, difference, map, sphere";
+  EXPECT_EQ(pictures, 7u) << "photograph, rendering, difference, map, sphere, coverage, uncertainty";
 }
 
 TEST_F(ModelReport, SaysTheNumbersOfTheFitAndOfTheComparison) {
@@ -81,6 +81,38 @@ TEST_F(ModelReport, NamesFromFilesCannotBecomeMarkup) {
   EXPECT_EQ(data.at("provenance").at("stages")[0].at("name"), "cluster </script><b>");
   EXPECT_EQ(data.at("evaluation"), nlohmann::json::parse(evaluation_json(evaluation_)));
   EXPECT_EQ(data.at("texels_by_material"), nlohmann::json::array({16}));
+}
+
+TEST_F(ModelReport, CoverageCountsOnlyTexelsThatWereMeasured) {
+  model_.samples.data = {0, 0, 0, 0, 0, 0, 2, 2, 4, 4, 4, 4, 4, 4, 4, 9};  // six texels borrow
+  model_.uncertainty.data.assign(16, 1.0f);
+  for (std::size_t i = 6; i < 16; ++i) model_.uncertainty.data[i] = 0.125f;
+  const auto coverage = nlohmann::json::parse(report_json({"bird", model_})).at("coverage");
+  EXPECT_EQ(coverage.at("texels"), 16);
+  EXPECT_EQ(coverage.at("texels_measured"), 10);
+  EXPECT_EQ(coverage.at("samples_a_texel").at("tenth"), 2.0);
+  EXPECT_EQ(coverage.at("samples_a_texel").at("median"), 4.0);
+  EXPECT_EQ(coverage.at("samples_a_texel").at("most"), 9.0);
+  EXPECT_EQ(coverage.at("relative_sigma").at("nine_tenths"), 0.125);
+  EXPECT_THAT(page(false), HasSubstr("nine tenths within 12"));
+}
+
+TEST_F(ModelReport, NamesTheNearestKnownMaterialAndSaysHowNearItIs) {
+  const Brdf own = model_.materials[0].brdf;
+  const auto scaled = [own](double factor) {
+    return [own, factor](const LobeGeometry& g) { ChannelValues f = evaluate(own, g); for (double& v : f) v *= factor; return f; };
+  };
+  const std::vector<KnownMaterial> known{{"chalk <white>", scaled(8.0)}, {"same", scaled(1.0)}};
+  NoProgress progress;
+  ReportSubject subject{"bird", model_};
+  subject.known = known;
+  const std::string html = model_report(subject, progress);
+  EXPECT_THAT(html, HasSubstr("hardly to be told apart"));
+  EXPECT_THAT(html, HasSubstr("same (0)"));
+  EXPECT_THAT(html, HasSubstr("chalk &lt;white&gt; ("));
+  const auto nearest = nlohmann::json::parse(report_json(subject)).at("nearest_materials");
+  EXPECT_EQ(nearest[0][0].at("name"), "same");
+  EXPECT_EQ(nearest[0][0].at("distance"), 0.0);
 }
 
 TEST_F(ModelReport, WithoutASessionTheModelAloneIsShown) {

@@ -33,6 +33,19 @@ TEST(ViewSelection, TakesNamesIndicesAndRanges) {
   EXPECT_EQ(select_views(kViews, {{"views=1..3"}, {}}).left_out, (Strings{"held", "fit_b", "c.exr"}));
 }
 
+TEST(ViewSelection, AnExtensionMayBeLeftOutOrStandThere) {
+  const Strings names{"fit_a", "c.exr", "d.exr", "d.png", "pose.1"};
+  EXPECT_EQ(view_named("--view", "c", names), 1u);
+  EXPECT_EQ(view_named("--view", "c.exr", names), 1u);
+  EXPECT_EQ(view_named("--view", "fit_a.exr", names), 0u);
+  EXPECT_EQ(view_named("--view", "d.png", names), 3u);  // exactly that one
+  EXPECT_EQ(view_named("--view", "pose.1", names), 4u);
+  EXPECT_BAD_INPUT(view_named("--view", "d", names), "--view", "d.exr or d.png");
+  EXPECT_BAD_INPUT(view_named("--view", "c.png", names), "--view", "no view 'c.png'", "fit_a, c.exr");
+  EXPECT_BAD_INPUT(view_named("--view", "pose", names), "no view 'pose'");
+  EXPECT_EQ(kept({"view=fit_b.exr"}), (Strings{"fit_a", "held", "c.exr", "2"}));
+}
+
 TEST(ViewSelection, TakesKindsToLeaveOut) {
   const ViewSelection selection = select_views(kViews, {{"kind=dark,gray_card"}, {}});
   EXPECT_EQ(selection.kinds_left_out, (std::set{ShotKind::Dark, ShotKind::GrayCard}));

@@ -1,0 +1,39 @@
+// A mixture of BRDFs brought to glTF's material by sampling it, not by renaming its parameters.
+//
+// Over a fixed set of directions (half vectors spaced by the logarithm of their tilt, so that sharp and broad lobes are both resolved) the
+// material is fitted by least squares of f cos_i, weighted by solid angle and by how much of a sphere's picture is seen at that angle. The
+// viewer's angles end where the two kinds of highlight part: towards grazing a microfacet lobe brightens as a Lafortune lobe does not, and
+// whoever fits there loses the highlight everywhere else.
+// For a given roughness the material is linear in base (1 - max f0) and f0;
+// the best roughness is searched among kRoughnesses values. What a texel needs are inner products with the basis BRDFs, worked out once a material: exact least squares at the price of a table.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "processing/export/gltf_material.h"
+
+namespace lumitexel {
+
+class MaterialRefit {
+ public:
+  // What will be mixed. One or three channels; one is repeated.
+  explicit MaterialRefit(const std::vector<Brdf>& basis);
+  // The mixture sum over k of weights[k] * basis[k]; weights >= 0.
+  GltfMaterial fit(std::span<const float> weights) const;
+
+  static constexpr int kRoughnesses = 128;  // (i + 1) / 128: finer than the eye, and than what noise leaves
+
+ private:
+  struct Products {
+    double diffuse = 0, specular = 0;  // with the two basis functions of one roughness
+  };
+  struct Table {
+    double roughness = 1, dd = 0, ds = 0, ss = 0, d_offset = 0, s_offset = 0, offset_offset = 0;
+    std::vector<std::array<Products, 3>> with_basis;
+    std::vector<std::array<double, 3>> offset_basis;
+  };
+  std::vector<Table> tables_;
+};
+
+}  // namespace lumitexel

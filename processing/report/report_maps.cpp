@@ -1,0 +1,84 @@
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "processing/report/html.h"
+#include "processing/report/report_sections.h"
+#include "processing/report/view_pictures.h"
+
+namespace lumitexel {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double kFullSigma = 0.5;  // drawn in full colour: half of the reflectance itself is open
+
+// The texels that were fitted to samples; filled-in ones know nothing of their own.
+std::vector<float> values_where_measured(const Model& model, const Image& map) {
+  std::vector<float> values;
+  for (std::size_t texel = 0; texel < model.material.size(); ++texel) {
+    if (model.material[texel] != Model::kNoMaterial && model.samples.data[texel] > 0.0f) values.push_back(map.data[texel]);
+  }
+  return values;
+}
+
+// Nearest rank; null of no values.
+Json share_below(std::vector<float> values, double share) {
+  if (values.empty()) return nullptr;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return static_cast<double>(*at);
+}
+
+// Near-white is good; few_is_bad: blue towards 0, else red towards `full`. White beside the object.
+Image shown(const Image& map, const Image& normal, double full, bool few_is_bad) {
+  Image picture(map.width, map.height, 3, 1.0f);
+  for (int y = 0; y < map.height; ++y) {
+    for (int x = 0; x < map.width; ++x) {
+      if (normal.at(x, y, 0) == 0.0f && normal.at(x, y, 1) == 0.0f && normal.at(x, y, 2) == 0.0f) continue;
+      const double share = std::clamp(map.at(x, y) / full, 0.0, 1.0);
+      const auto colour = false_colour(few_is_bad ? share - 1.0 : share);
+      std::copy(colour.begin(), colour.end(), &picture.at(x, y));
+    }
+  }
+  return picture;
+}
+
+std::string percent(const Json& share) { return share.is_number() ? html::number(100.0 * share.get<double>(), 2) + " %" : "–"; }
+
+std::string count(const Json& value) { return value.is_number() ? html::number(value.get<double>()) : "–"; }
+
+}  // namespace
+
+Json coverage_json(const Model& model) {
+  const std::vector<float> samples = values_where_measured(model, model.samples);
+  const std::vector<float> sigma = values_where_measured(model, model.uncertainty);
+  const auto surface = std::count_if(model.material.begin(), model.material.end(), [](std::int16_t m) { return m != Model::kNoMaterial; });
+  return {{"texels", surface},
+          {"texels_measured", samples.size()},
+          {"samples_a_texel", {{"tenth", share_below(samples, 0.1)}, {"median", share_below(samples, 0.5)}, {"most", share_below(samples, 1.0)}}},
+          {"relative_sigma", {{"median", share_below(sigma, 0.5)}, {"nine_tenths", share_below(sigma, 0.9)}}}};
+}
+
+std::string coverage_section(const Model& model, const ViewRenderer& renderer, const View& view) {
+  const Json data = coverage_json(model);
+  const Json& samples = data.at("samples_a_texel");
+  const Json& sigma = data.at("relative_sigma");
+  const Image normal = renderer.render_aov(view, Aov::Normal);
+  const double most = samples.at("most").is_number() ? samples.at("most").get<double>() : 1.0;
+  const std::string views = html::figure(
+      html::picture(shown(renderer.render_aov(view, Aov::Samples), normal, most, true), "samples a texel"),
+      "How many photographs measured each point: light " + count(samples.at("most")) + ", blue none. Half of the texels have " +
+          count(samples.at("median")) + " or more, nine tenths " + count(samples.at("tenth")) + " or more.");
+  const std::string uncertain = html::figure(
+      html::picture(shown(renderer.render_aov(view, Aov::Sigma), normal, kFullSigma, false), "uncertainty"),
+      "How uncertain the reflectance is, one sigma: light 0, red " + percent(Json(kFullSigma)) + " and more. Half of the texels are within " +
+          percent(sigma.at("median")) + ", nine tenths within " + percent(sigma.at("nine_tenths")) + ".");
+  return html::section("Where it was measured, and how surely",
+                       "Points that few photographs saw lit are less certain. Blue on the left and red on the right is where more "
+                       "photographs would help most; what was never measured borrows from its neighbours and is blue and red. Thin lines are edges of the "
+                       "atlas's patches, where a texel borrows, too.",
+                       "<div class=\"row\">" + views + uncertain + "</div>\n");
+}
+
+}  // namespace lumitexel
