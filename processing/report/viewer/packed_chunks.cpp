@@ -86,6 +86,6 @@ std::map<std::string, std::size_t> PackedChunks::bytes() const {
   return sizes;
 }
 
-std::uint16_t half_bits(float value) { return half(std::clamp(value, -HALF_MAX, HALF_MAX)).bits(); }
+std::uint16_t half_bits(float value) { return half(std::clamp(value, -static_cast<float>(HALF_MAX), static_cast<float>(HALF_MAX))).bits(); }
 
 }  // namespace lumitexel

@@ -7,17 +7,15 @@
 #include "processing/report/html.h"
 #include "processing/report/viewer/packed_chunks.h"
 #include "processing/report/viewer/page_files.h"
-#include "processing/report/viewer/viewer_lumitexels.h"
 #include "processing/report/viewer/viewer_model.h"
 
 namespace lumitexel {
 namespace {
 
 // In the order in which they are run: each may use what those before it defined.
-constexpr const char* kScripts[] = {"data.js",    "hierarchy.js", "reflectance.js", "camera.js", "textures.js",        "renderer.js",
-                                    "picture.js", "orbit.js",     "panel.js",       "lumitexel_panel.js", "main.js"};
-constexpr const char* kShaders[] = {"brdf.glsl",     "surface.glsl", "texels.glsl", "occlusion.glsl", "triangle.vert",
-                                    "triangle.frag", "screen.vert",  "shade.frag",  "maps.frag",      "display.frag"};
+constexpr const char* kScripts[] = {"data.js",     "bvh.js", "textures.js", "renderer.js",
+                                    "texel_table.js", "ui.js",  "main.js"};
+constexpr const char* kShaders[] = {"brdf.glsl", "surface.glsl", "shade.glsl"};
 
 std::string page_file(const std::string& name) {
   for (const PageFile* file = kPageFiles; file->name != nullptr; ++file) {
@@ -53,41 +51,23 @@ std::string inline_json(const std::string& json) {
 
 }  // namespace
 
-ViewerPage viewer_page(const ViewerSubject& subject, Progress& progress) {
-  if (subject.sample_lattice < 1) throw BadInput("samples", std::to_string(subject.sample_lattice), "1 or more");
-  ViewerPage page;
+ViewerPage viewer_page(const std::string& title, const Model& model) {
   PackedChunks chunks;
-  nlohmann::json document = viewer_model_json(subject.model);
-  document["title"] = subject.name;
-  page.textured_texels = textured_texels(subject.model).size();
-  if (subject.session != nullptr) {
-    const CarriedSamples carried = add_lumitexels(subject.model, *subject.session, subject.sample_lattice, document, chunks, progress);
-    page.lumitexels = carried.lumitexels;
-    page.samples = carried.samples;
-  }
-  progress.begin("viewer: packing", 1, "pages");
-  add_model_chunks(subject.model, chunks);
-  chunks.add_text("three", page_file("three.min.js"));
+  add_model_chunks(model, chunks);
+  nlohmann::json document = viewer_model_json(model);
   document["chunks"] = nlohmann::json::parse(chunks.directory_json());
 
-  page.bytes = chunks.bytes();
-  const std::string own[] = {page_file("style.css"), inline_json(document.dump()), inline_json(shaders_json()), scripts()};
-  page.html = page_file("page.html");
-  replace(page.html, "title", html::escaped(subject.name));
-  replace(page.html, "style", own[0]);
-  replace(page.html, "document", own[1]);
-  replace(page.html, "shaders", own[2]);
+  ViewerPage page{page_file("page.html"), chunks.bytes(), textured_texels(model).size()};
+  page.bytes["three"] = page_file("three.min.js").size();
+  replace(page.html, "title", html::escaped(title));
+  replace(page.html, "title", html::escaped(title));
+  replace(page.html, "style", page_file("viewer.css"));
+  replace(page.html, "document", inline_json(document.dump()));
+  replace(page.html, "shaders", inline_json(shaders_json()));
+  replace(page.html, "three", page_file("three.min.js"));
   replace(page.html, "chunks", chunks.markup());
-  replace(page.html, "script", own[3]);
-  page.bytes["description"] = own[1].size();
-  page.bytes["program"] = own[0].size() + own[2].size() + own[3].size();
-  progress.update(1);
+  replace(page.html, "script", scripts());
   return page;
-}
-
-std::string viewer_frame(const ViewerPage& page, const std::string& title) {
-  return "<iframe title=\"" + html::escaped(title) + "\" loading=\"lazy\" style=\"width:100%;height:720px;border:0\" srcdoc=\"" +
-         html::escaped(page.html) + "\"></iframe>\n";
 }
 
 }  // namespace lumitexel
