@@ -1,5 +1,5 @@
 // Starts the viewer. The address may end in #measure={...}: then the page draws that one view instead and writes what it drew as text,
-// for comparing it with the ray tracer; with "frames", also how long a turn of so many pictures took.
+// for comparing it with the ray tracer; with "frames" it logs how long a picture took while the camera turned once in so many.
 function base64Of(values) {
   const bytes = new Uint8Array(values.buffer);
   let text = "";
@@ -9,23 +9,31 @@ function base64Of(values) {
 
 function aboutCentre(point) { return new THREE.Vector3(...point.map((value, k) => value - page.centre[k])); }
 
+function frameTime(renderer, camera, frames) {
+  renderer.draw("radiance");
+  renderer.finish();
+  const begin = performance.now();
+  for (let i = 0; i < frames; ++i) {
+    renderer.setCamera({ ...camera, eye: camera.eye.clone().applyAxisAngle(camera.up, 2 * Math.PI * i / frames) });
+    renderer.draw("radiance");
+    renderer.finish();
+  }
+  return (performance.now() - begin) / frames;
+}
+
 function measure(renderer, wanted) {
   const u = renderer.uniforms, camera = { eye: aboutCentre(wanted.eye), target: aboutCentre(wanted.target), up: new THREE.Vector3(...wanted.up), fovY: wanted.fov_rad };
   renderer.setSize(wanted.width, wanted.height);
   renderer.setCamera(camera);
-  renderer.setStage(wanted.stage);
   u.light.value.copy(aboutCentre(wanted.light));
   u.intensity.value.set(...wanted.intensity);
-  const result = { radiance: base64Of(renderer.read("linear")), texel: base64Of(renderer.read("texel")), triangles: renderer.mesh.raster.length / 9 };
-  if (wanted.frames) {
-    const begin = performance.now();
-    for (let i = 0; i < wanted.frames; ++i) {
-      renderer.setCamera({ ...camera, eye: camera.eye.clone().applyAxisAngle(camera.up, 2 * Math.PI * i / wanted.frames) });
-      renderer.draw("radiance");
-      renderer.finish();
-    }
-    result.frame_ms = (performance.now() - begin) / wanted.frames;
+  const result = { radiance: {}, texel: "" };
+  for (const stage of wanted.stages) {
+    renderer.setStage(stage);
+    result.radiance[stage] = base64Of(renderer.read("linear"));
   }
+  result.texel = base64Of(renderer.read("texel"));
+  if (wanted.frames) console.log("frame_ms=" + frameTime(renderer, camera, wanted.frames) + ";");
   const place = document.createElement("pre");
   place.id = "measured";
   place.textContent = JSON.stringify(result);

@@ -72,7 +72,7 @@ function basisTexture() {
   const stages = {
     single: { firstRow: 0, rowsPerMaterial: 0, rowCount: 1, weights: null },
     cluster: { firstRow: 1, rowsPerMaterial: 1, rowCount: 1, weights: null },
-    final: { firstRow: 1 + count + count * before, rowsPerMaterial: final, rowCount: final, weights: "weights" },
+    pfa: { firstRow: 1 + count + count * before, rowsPerMaterial: final, rowCount: final, weights: "weights" },
   };
   if (before > 0) stages.projection = { firstRow: 1 + count, rowsPerMaterial: before, rowCount: before, weights: "projection_weights" };
   return { basisMap: nearestTexture(table, columns, rows, THREE.FloatType), stages, colourColumn: columns - 1 };

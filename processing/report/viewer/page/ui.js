@@ -22,10 +22,10 @@ class Viewer {
   fillPanel() {
     const shows = { radiance: "radiance", normals: "normals", clusters: "clusters", sigma: "uncertainty", samples: "number of samples" };
     if (page.chunks.residual) shows.residual = "residual";
-    const names = { single: "one BRDF for all", cluster: "clusters", projection: "projection", final: "final" };
+    const names = { single: "one BRDF for all", cluster: "clusters", projection: "projection", pfa: "final" };
     for (const [value, text] of Object.entries(shows)) element("show").add(new Option(text, value));
     for (const [value, text] of Object.entries(names)) {
-      if (this.renderer.basis.stages[value]) element("stage").add(new Option(text, value, false, value === "final"));
+      if (this.renderer.basis.stages[value]) element("stage").add(new Option(text, value, false, value === "pfa"));
     }
     this.scales = {};
     for (const name of ["sigma", "samples", "residual"]) {
