@@ -15,7 +15,7 @@ struct Site {  // of one lumitexel
   SurfacePoint point;
 };
 
-enum class Verdict : std::uint8_t { Used, OutsideFrame, Hidden, InShadow, DepthEdge, ShadowEdge, Grazing, Flagged };
+using Verdict = SampleVerdict;
 
 struct ViewSamples {  // of one view, for every site
   std::vector<Verdict> verdict;
@@ -236,6 +236,8 @@ GatheredLumitexels gather_lumitexels(const CalibratedSession& session, const Atl
     progress.update(static_cast<std::int64_t>(k + 1));
   }
   result.set = assemble(sites, used_views, samples, session.channels);
+  result.used_views = used_views;
+  for (ViewSamples& of_view : samples) result.verdict.push_back(std::move(of_view.verdict));
   return result;
 }
 

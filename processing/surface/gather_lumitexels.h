@@ -16,6 +16,8 @@ inline constexpr double kGrazingCosine = 0.25;  // 75.5 degrees
 struct GatheredLumitexels {
   LumitexelSet set;  // in order of atlas texel
   RejectionCounts rejected;
+  std::vector<std::size_t> used_views;               // indices into session.views
+  std::vector<std::vector<SampleVerdict>> verdict;   // by used view, then by lumitexel in the set's order
 };
 
 // Reads the fit views' photographs one at a time; held-out views take no part. A sample is

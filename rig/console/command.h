@@ -45,6 +45,7 @@ void add_evaluate_command(CLI::App& app, CommandAction& action);
 void add_tradeoff_command(CLI::App& app, CommandAction& action);
 void add_export_command(CLI::App& app, CommandAction& action);
 void add_report_command(CLI::App& app, CommandAction& action);
+void add_view_command(CLI::App& app, CommandAction& action);
 void add_selftest_command(CLI::App& app, CommandAction& action);
 
 }  // namespace lumitexel

@@ -31,6 +31,7 @@ const std::vector<void (*)(CLI::App&, CommandAction&)> kCommands = {
     add_tradeoff_command,
     add_export_command,
     add_report_command,
+    add_view_command,
     add_selftest_command,
 };
 

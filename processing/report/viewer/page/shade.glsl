@@ -1,0 +1,115 @@
+// One pixel, as ViewRenderer (processing/model/render_view.cpp) computes it: f cos at each of the four texels around the point with
+// that texel's own normal, blended bilinearly over those that have a material.
+uniform highp sampler2D normalMap;   // xyz: unit, in world, zero: the vertex normal; w: material, -1: none
+uniform highp sampler2D figureMap;   // sigma, samples, residual
+uniform highp sampler2DArray weightMap;
+uniform vec2 atlasSize;
+uniform int firstRow, rowsPerMaterial, rowCount;  // of basisMap: of the stage's first material; further ones; how many are mixed
+uniform bool weighted, texelNormals, shadows;
+uniform vec3 light, intensity;  // m, W/sr
+uniform float exposure, figureScale;
+uniform int show, clusterRow, colourColumn;
+
+const int kRadiance = 0, kNormals = 1, kClusters = 2, kSigma = 3, kSamples = 4, kResidual = 5, kTexel = 6, kLinear = 7;
+
+struct Texels { ivec2 at[4]; float weight[4]; vec4 normal[4]; };
+
+// Weights sum to 1, or are all 0 in a hole of the atlas.
+Texels texelsAround(vec2 texcoord) {
+  Texels t;
+  vec2 at = vec2(texcoord.x, 1.0 - texcoord.y) * atlasSize - 0.5, first = floor(at), part = at - first;
+  float total = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    ivec2 step = ivec2(k & 1, k >> 1);
+    t.at[k] = clamp(ivec2(first) + step, ivec2(0), ivec2(atlasSize) - 1);
+    t.normal[k] = texelFetch(normalMap, t.at[k], 0);
+    float weight = (step.x == 1 ? part.x : 1.0 - part.x) * (step.y == 1 ? part.y : 1.0 - part.y);
+    t.weight[k] = t.normal[k].w < 0.0 ? 0.0 : weight;
+    total += t.weight[k];
+  }
+  for (int k = 0; k < 4; ++k) t.weight[k] = total > 0.0 ? t.weight[k] / total : 0.0;
+  return t;
+}
+
+vec3 normalAt(Texels t, int k, Point p) {
+  vec3 normal = t.normal[k].xyz;
+  return texelNormals && dot(normal, normal) > 0.0 ? normalize(normal) : p.vertexNormal;
+}
+
+vec3 reflectance(ivec2 at, int material, Geometry g) {
+  int row = firstRow + rowsPerMaterial * material;
+  if (!weighted) return evaluateBrdf(row, g);
+  vec3 sum = vec3(0.0);
+  vec4 weights = vec4(0.0);
+  for (int k = 0; k < rowCount; ++k) {
+    if (k % 4 == 0) weights = texelFetch(weightMap, ivec3(at, k / 4), 0);
+    float weight = weights[k % 4];
+    if (weight > 0.0) sum += weight * evaluateBrdf(row + k, g);
+  }
+  return sum;
+}
+
+vec3 radiance(Point p, Texels t) {
+  vec3 towards = light - p.position;
+  float distance2 = dot(towards, towards);
+  vec3 wi = towards * inversesqrt(distance2), wo = normalize(eye - p.position), sum = vec3(0.0);
+  bool askedForShadow = !shadows;
+  for (int k = 0; k < 4; ++k) {
+    if (t.weight[k] == 0.0) continue;
+    Geometry g = geometryOf(normalAt(t, k, p), wi, wo);
+    if (g.cosI <= 0.0 || g.cosO <= 0.0) continue;
+    if (!askedForShadow && !seesLight(p, light)) return vec3(0.0);
+    askedForShadow = true;
+    sum += t.weight[k] * g.cosI * reflectance(t.at[k], int(t.normal[k].w), g);
+  }
+  return sum * intensity / distance2;
+}
+
+int nearest(Texels t) {
+  int best = 0;
+  for (int k = 1; k < 4; ++k) {
+    if (t.weight[k] > t.weight[best]) best = k;
+  }
+  return best;
+}
+
+vec3 srgb(vec3 linear) {
+  vec3 x = clamp(linear, 0.0, 1.0);
+  return mix(12.92 * x, 1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, greaterThan(x, vec3(0.0031308)));
+}
+
+// Dark blue over green to yellow; viewer.js draws its legend from the same numbers.
+vec3 heat(float x) {
+  x = clamp(x, 0.0, 1.0);
+  return x < 0.5 ? mix(vec3(0.23, 0.12, 0.38), vec3(0.13, 0.57, 0.55), 2.0 * x) : mix(vec3(0.13, 0.57, 0.55), vec3(0.99, 0.91, 0.14), 2.0 * x - 1.0);
+}
+
+vec4 pixel(Point p, Texels t) {
+  if (show == kLinear) return vec4(radiance(p, t), 1.0);
+  if (show == kRadiance) return vec4(srgb(exposure * radiance(p, t)), 1.0);
+  int best = nearest(t);
+  bool hole = t.weight[best] == 0.0;
+  if (show == kTexel) return hole ? vec4(-1.0, -1.0, -1.0, float(p.triangle)) : vec4(vec2(t.at[best]), t.normal[best].w, float(p.triangle));
+  if (show == kNormals) {
+    vec3 sum = vec3(0.0);
+    for (int k = 0; k < 4; ++k) sum += t.weight[k] * normalAt(t, k, p);
+    return vec4(0.5 + 0.5 * normalize(hole ? p.vertexNormal : sum), 1.0);
+  }
+  if (hole) return vec4(0.25, 0.0, 0.0, 1.0);
+  if (show == kClusters) return vec4(texelFetch(basisMap, ivec2(colourColumn, clusterRow + int(t.normal[best].w)), 0).rgb, 1.0);
+  vec4 figures = vec4(0.0);
+  for (int k = 0; k < 4; ++k) {
+    if (t.weight[k] > 0.0) figures += t.weight[k] * texelFetch(figureMap, t.at[k], 0);
+  }
+  if (show == kSamples) figures = texelFetch(figureMap, t.at[best], 0);
+  return vec4(heat(figures[show - kSigma] / figureScale), 1.0);
+}
+
+void main() {
+  Point p;
+  if (!pointAt(gl_FragCoord.xy, p)) {
+    gl_FragColor = show == kTexel || show == kLinear ? vec4(-1.0, -1.0, -1.0, 0.0) : vec4(0.063, 0.071, 0.078, 1.0);
+    return;
+  }
+  gl_FragColor = pixel(p, texelsAround(p.texcoord));
+}

@@ -1,0 +1,163 @@
+// What the mouse and the panel do.
+const kFovY = 0.5;  // rad; as framing_view
+const element = (id) => document.getElementById(id);
+const rounded = (value, digits = 4) => Number(value.toPrecision(digits)).toString();
+const css = (rgb) => "rgb(" + rgb.map((x) => Math.round(255 * x)).join(",") + ")";
+
+// A direction by its angles about z: turn and height, rad.
+const direction = ({ turn, height }) =>
+  new THREE.Vector3(Math.cos(height) * Math.cos(turn), Math.cos(height) * Math.sin(turn), Math.sin(height));
+
+class Viewer {
+  constructor(renderer, canvas) {
+    Object.assign(this, { renderer, canvas, target: new THREE.Vector3(), moving: false, slow: 1, asked: false });
+    this.distance = 1.05 * 0.5 * page.diagonal_m / Math.sin(0.5 * kFovY);
+    this.view = { turn: -1.19, height: 0.43 };
+    this.lightTurn = { turn: -0.35, height: 0.45 };  // beside the view where the light goes with it
+    this.fillPanel();
+    this.listen();
+    this.resize();
+  }
+
+  fillPanel() {
+    const shows = { radiance: "radiance", normals: "normals", clusters: "clusters", sigma: "uncertainty", samples: "number of samples" };
+    if (page.chunks.residual) shows.residual = "residual";
+    const names = { single: "one BRDF for all", cluster: "clusters", projection: "projection", pfa: "final" };
+    for (const [value, text] of Object.entries(shows)) element("show").add(new Option(text, value));
+    for (const [value, text] of Object.entries(names)) {
+      if (this.renderer.basis.stages[value]) element("stage").add(new Option(text, value, false, value === "pfa"));
+    }
+    this.scales = {};
+    for (const name of ["sigma", "samples", "residual"]) {
+      if (!page.chunks[name]) continue;
+      const sorted = Float32Array.from(this.renderer.data[name], fromHalf).sort();
+      this.scales[name] = sorted[Math.floor(0.98 * (sorted.length - 1))] || 1;
+    }
+  }
+
+  listen() {
+    for (const id of ["show", "stage", "normals", "shadows", "follow", "exposure", "distance"]) {
+      element(id).addEventListener("input", () => { if (id === "follow") this.keepLight(); this.ask(); });
+    }
+    addEventListener("resize", () => this.resize());
+    this.canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+    this.canvas.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      this.distance *= Math.exp(0.001 * event.deltaY);
+      this.move();
+    }, { passive: false });
+    this.canvas.addEventListener("pointerdown", (event) => this.press(event));
+  }
+
+  press(event) {
+    const light = event.button === 2 || event.shiftKey, start = [event.clientX, event.clientY];
+    let last = start, dragged = false;
+    this.canvas.setPointerCapture(event.pointerId);
+    const drag = (at) => {
+      dragged = dragged || Math.hypot(at.clientX - start[0], at.clientY - start[1]) > 3;
+      if (!dragged) return;
+      const angles = light ? this.lightTurn : this.view, sign = light ? 1 : -1;
+      angles.turn += sign * 0.008 * (at.clientX - last[0]);
+      angles.height = Math.max(-1.55, Math.min(1.55, angles.height - sign * 0.008 * (at.clientY - last[1])));
+      last = [at.clientX, at.clientY];
+      this.move();
+    };
+    const release = (at) => {
+      this.canvas.removeEventListener("pointermove", drag);
+      this.canvas.removeEventListener("pointerup", release);
+      if (!dragged && !light) this.pick(at.offsetX, at.offsetY);
+    };
+    this.canvas.addEventListener("pointermove", drag);
+    this.canvas.addEventListener("pointerup", release);
+  }
+
+  // Switching between a light that goes with the camera and one that stays leaves it where it is.
+  keepLight() {
+    const sign = element("follow").checked ? -1 : 1;
+    this.lightTurn.turn += sign * this.view.turn;
+    this.lightTurn.height += sign * this.view.height;
+  }
+
+  lightAngles() {
+    if (!element("follow").checked) return this.lightTurn;
+    return { turn: this.view.turn + this.lightTurn.turn, height: this.view.height + this.lightTurn.height };
+  }
+
+  // While something moves, fewer pixels where all of them took too long; all of them 0.2 s after.
+  move() {
+    this.moving = true;
+    clearTimeout(this.rest);
+    this.rest = setTimeout(() => { this.moving = false; this.resize(); }, 200);
+    this.ask();
+  }
+
+  resize() {
+    const scale = (this.moving ? 1 / this.slow : 1) * Math.min(devicePixelRatio, 2);
+    const width = Math.max(1, Math.round(this.canvas.clientWidth * scale)), height = Math.max(1, Math.round(this.canvas.clientHeight * scale));
+    if (width !== this.renderer.width || height !== this.renderer.height) this.renderer.setSize(width, height);
+    this.ask();
+  }
+
+  ask() {
+    if (this.asked) return;
+    this.asked = true;
+    requestAnimationFrame(() => { this.asked = false; this.draw(); });
+  }
+
+  settle() {
+    const u = this.renderer.uniforms, show = element("show").value, lightDistance = Number(element("distance").value) * page.diagonal_m;
+    this.renderer.setCamera({ eye: direction(this.view).multiplyScalar(this.distance), target: this.target, up: new THREE.Vector3(0, 0, 1), fovY: kFovY });
+    this.renderer.setStage(element("stage").value);
+    u.light.value.copy(direction(this.lightAngles()).multiplyScalar(lightDistance));
+    u.intensity.value.setScalar(Math.PI * lightDistance * lightDistance);  // a white diffuse surface in the middle has radiance 1
+    u.exposure.value = 2 ** Number(element("exposure").value);
+    u.shadows.value = element("shadows").checked;
+    u.texelNormals.value = element("normals").value === "fitted";
+    u.figureScale.value = this.scales[show] || 1;
+    element("exposure-text").value = (Number(element("exposure").value) >= 0 ? "+" : "") + element("exposure").value + " stops";
+    element("distance-text").value = rounded(lightDistance, 3) + " m";
+  }
+
+  draw() {
+    this.resizeForMotion();
+    const begin = performance.now();
+    this.settle();
+    this.renderer.draw(element("show").value);
+    this.renderer.finish();
+    this.frame_ms = performance.now() - begin;
+    element("speed").textContent = rounded(this.frame_ms, 3) + " ms for " + this.renderer.width + " x " + this.renderer.height + " pixels";
+    this.legend(element("show").value);
+  }
+
+  resizeForMotion() {
+    if (!this.moving) return;
+    const wanted_ms = 33;
+    if (this.frame_ms > 1.2 * wanted_ms && this.slow < 4) this.slow *= Math.SQRT2;
+    if (this.frame_ms < 0.4 * wanted_ms && this.slow > 1) this.slow = Math.max(1, this.slow / Math.SQRT2);
+    this.resize();
+    this.asked = false;
+  }
+
+  legend(show) {
+    const units = { sigma: "relative, one sigma", samples: "samples a texel", residual: "1/sr, root mean square" };
+    if (show === "clusters") {
+      element("legend").innerHTML = page.materials.map((m, i) => `<div><span class="swatch" style="background:${css(m.colour)}"></span>material ${i}</div>`).join("");
+    } else if (this.scales[show]) {
+      element("legend").innerHTML = '<div class="bar" style="background:linear-gradient(90deg,rgb(59,31,97),rgb(33,145,140),rgb(252,232,36))"></div>' +
+        `<div class="ends"><span>0</span><span>${units[show]}</span><span>${rounded(this.scales[show], 3)}</span></div>`;
+    } else {
+      element("legend").innerHTML = "";
+    }
+  }
+
+  pick(x, y) {
+    this.moving = false;
+    this.resize();
+    this.settle();
+    const scale = this.renderer.width / this.canvas.clientWidth;
+    const column = Math.floor(x * scale), row = this.renderer.height - 1 - Math.floor(y * scale);
+    const [texelX, texelY, material] = this.renderer.read("texel", column, row, 1, 1);
+    element("texel").innerHTML = material < 0 ? "" : texelTable(this.renderer, texelX, texelY);
+    this.ask();
+  }
+}

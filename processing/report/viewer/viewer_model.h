@@ -1,0 +1,30 @@
+// A model as the viewer's page carries it: numbers that a person might read as JSON, maps and mesh as chunks.
+//
+// What is lost on the way: weights, uncertainty and residuals are half floats (relative 5e-4 at most), normals octahedral on 16 bits
+// each (3e-5 rad), the mesh single precision about the middle of its box. Maps hold only texels with a material, in raster order.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "processing/model/model.h"
+#include "processing/report/viewer/packed_chunks.h"
+
+namespace lumitexel {
+
+// Atlas indices y * width + x of the texels with a material.
+std::vector<std::uint32_t> textured_texels(const Model& model);
+
+// "channels", "atlas", "centre" (m, of the mesh's box), "diagonal_m", "single", "materials", "basis_size", "principal_functions".
+nlohmann::json viewer_model_json(const Model& model);
+// "positions", "normals", "texcoords", "triangles", "material", "texel_normals", "weights", "projection_weights", "sigma", "samples".
+void add_model_chunks(const Model& model, PackedChunks& chunks);
+
+// A unit vector's two octahedral coordinates, 0 … 65534; kNoOctahedral twice for a zero vector.
+inline constexpr std::uint16_t kNoOctahedral = 65535;
+std::array<std::uint16_t, 2> octahedral(const Eigen::Vector3d& unit);
+Eigen::Vector3d from_octahedral(const std::array<std::uint16_t, 2>& code);
+
+}  // namespace lumitexel

@@ -1,0 +1,73 @@
+#include "processing/report/viewer/viewer_page.h"
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "drivers/error.h"
+#include "processing/report/html.h"
+#include "processing/report/viewer/packed_chunks.h"
+#include "processing/report/viewer/page_files.h"
+#include "processing/report/viewer/viewer_model.h"
+
+namespace lumitexel {
+namespace {
+
+// In the order in which they are run: each may use what those before it defined.
+constexpr const char* kScripts[] = {"data.js",     "bvh.js", "textures.js", "renderer.js",
+                                    "texel_table.js", "ui.js",  "main.js"};
+constexpr const char* kShaders[] = {"brdf.glsl", "surface.glsl", "shade.glsl"};
+
+std::string page_file(const std::string& name) {
+  for (const PageFile* file = kPageFiles; file->name != nullptr; ++file) {
+    if (name == file->name) return file->text;
+  }
+  throw Error("viewer: the page's file " + name + " is not in the program");
+}
+
+void replace(std::string& text, const std::string& key, const std::string& value) {
+  const std::string mark = "{{" + key + "}}";
+  const std::size_t at = text.find(mark);
+  if (at == std::string::npos) throw Error("viewer: page.html has no " + mark);
+  text.replace(at, mark.size(), value);
+}
+
+std::string shaders_json() {
+  nlohmann::json shaders = nlohmann::json::object();
+  for (const char* name : kShaders) shaders[name] = page_file(name);
+  return shaders.dump();
+}
+
+std::string scripts() {
+  std::string text = "\"use strict\";\n";
+  for (const char* name : kScripts) text += page_file(name);
+  return text;
+}
+
+std::string inline_json(const std::string& json) {
+  std::string text = json;
+  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3) text.insert(at + 1, "\\");
+  return text;
+}
+
+}  // namespace
+
+ViewerPage viewer_page(const std::string& title, const Model& model) {
+  PackedChunks chunks;
+  add_model_chunks(model, chunks);
+  nlohmann::json document = viewer_model_json(model);
+  document["chunks"] = nlohmann::json::parse(chunks.directory_json());
+
+  ViewerPage page{page_file("page.html"), chunks.bytes(), textured_texels(model).size()};
+  page.bytes["three"] = page_file("three.min.js").size();
+  replace(page.html, "title", html::escaped(title));
+  replace(page.html, "title", html::escaped(title));
+  replace(page.html, "style", page_file("viewer.css"));
+  replace(page.html, "document", inline_json(document.dump()));
+  replace(page.html, "shaders", inline_json(shaders_json()));
+  replace(page.html, "three", page_file("three.min.js"));
+  replace(page.html, "chunks", chunks.markup());
+  replace(page.html, "script", scripts());
+  return page;
+}
+
+}  // namespace lumitexel

@@ -1,0 +1,23 @@
+// The interactive viewer as one self-contained HTML page that works offline, from a file: three.js and the data inside it, a shader that
+// evaluates the model as processing/model/render_view.h does.
+//
+// Needs a browser with WebGL 2, float render targets and DecompressionStream (2023 and later). The model's atlas may be no larger than the
+// browser's largest texture (mostly 16384 a side). What is lost on the way: viewer_model.h; the shader works in single precision.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "processing/model/model.h"
+
+namespace lumitexel {
+
+struct ViewerPage {
+  std::string html;
+  std::map<std::string, std::size_t> bytes;  // of the page, by what they hold
+  std::size_t textured_texels = 0;
+};
+
+ViewerPage viewer_page(const std::string& title, const Model& model);
+
+}  // namespace lumitexel

@@ -1,0 +1,30 @@
+// What the viewer's page draws, got out of headless Chromium (its software renderer) as numbers.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "processing/model/model.h"
+#include "processing/calibration/calibrated_session.h"
+
+namespace lumitexel {
+
+struct BrowserPicture {
+  std::vector<float> radiance;  // width * height * 4, top row first: channels, then 1 on the object and 0 beside it
+  std::vector<float> texel;     // the same: nearest texel's x and y, material, triangle; -1 in holes of the atlas and beside the object
+};
+
+bool has_chromium();
+
+// By stage. The view: a camera without distortion, its principal point in the middle, and a point light without a pattern. Nothing if
+// the browser did not come up with it; `page` is the viewer's file.
+std::optional<std::map<FitStage, BrowserPicture>> browser_pictures(const std::filesystem::path& page, const View& view,
+                                                                   const std::vector<FitStage>& stages);
+
+// Of the same page: milliseconds a picture while the camera turns once around, by the browser's clock.
+std::optional<double> browser_frame_ms(const std::filesystem::path& page, const View& view, FitStage stage, int frames);
+
+}  // namespace lumitexel
