@@ -2,8 +2,10 @@
 
 #include <fstream>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "processing/model/render_view.h"
+#include "processing/report/viewer/viewer_layers.h"
 #include "processing/report/viewer/viewer_page.h"
 #include "tests/unit/plain_models.h"
 #include "tests/unit/temporary_folder.h"
@@ -62,9 +64,29 @@ Model bumpy_model() {
   return model;
 }
 
-TEST(ViewerPicture, IsTheRayTracersAtEveryStage) {
-  if (!has_chromium()) GTEST_SKIP() << "NOT TESTED: no chromium here to draw the viewer's page with";
-  const Model model = bumpy_model();
+// Also with a layer of its own for the stages before normals: other materials, fewer of them, other patches, weights and bases.
+Model layered_model() {
+  Model model = bumpy_model();
+  ReflectanceLayer before{{model.materials[1]}, model.material, Image(256, 128, 3), Image(256, 128, 1)};
+  before.materials[0].brdf = lobed_brdf(BrdfFamily::Ggx, 0.02, 0.02, 0.1, 0.5, 0.3);
+  before.materials[0].basis.resize(3);
+  before.materials[0].projection_basis = {model.materials[0].basis[1]};
+  for (int y = 0; y < 128; ++y) {
+    for (int x = 0; x < 256; ++x) {
+      auto& material = before.material[static_cast<std::size_t>(y) * 256 + static_cast<std::size_t>(x)];
+      if (material != Model::kNoMaterial) material = x % 100 < 4 ? Model::kNoMaterial : 0;
+      for (int k = 0; k < 3; ++k) before.weights.at(x, y, k) = static_cast<float>(std::max(0.0, std::cos(0.03 * x * (k + 1) + 0.2 * y)));
+      before.projection_weights.at(x, y, 0) = static_cast<float>(0.6 + 0.4 * std::sin(0.1 * y));
+    }
+  }
+  model.before_normals = before;
+  // After normals, principal functions are not sought again.
+  model.projection_weights = Image();
+  for (ModelMaterial& material : model.materials) material.projection_basis.clear();
+  return model;
+}
+
+void expect_the_ray_tracers(const Model& model) {
   const TemporaryFolder folder;
   std::ofstream(folder / "page.html", std::ios::binary) << viewer_page("bumpy", model).html;
   View view = framing_view(model.mesh, model.channels, 300, {0.5, -1.0, 0.4}, Eigen::Vector3d::UnitZ());
@@ -84,6 +106,25 @@ TEST(ViewerPicture, IsTheRayTracersAtEveryStage) {
     EXPECT_GT(found.same_texel, 0.97 * found.object_pixels);  // the rest: holes of the atlas, and texels' borders
     EXPECT_GT(found.psnr_db, kLeastPsnr_db) << to_string(stage);
   }
+}
+
+TEST(ViewerPicture, IsTheRayTracersAtEveryStage) {
+  if (!has_chromium()) GTEST_SKIP() << "NOT TESTED: no chromium here to draw the viewer's page with";
+  expect_the_ray_tracers(bumpy_model());
+}
+
+TEST(ViewerPicture, IsTheRayTracersAtEveryStageWhereNormalsWereFitted) {
+  if (!has_chromium()) GTEST_SKIP() << "NOT TESTED: no chromium here to draw the viewer's page with";
+  expect_the_ray_tracers(layered_model());
+}
+
+TEST(ViewerStages, AreThoseThatTheModelHolds) {
+  const nlohmann::json plain = stages_json(bumpy_model()), layered = stages_json(layered_model());
+  ASSERT_EQ(plain.size(), std::size(kFitStages));
+  for (std::size_t i = 0; i < std::size(kFitStages); ++i) EXPECT_EQ(plain[i]["name"], to_string(kFitStages[i]));
+  EXPECT_EQ(plain[4], (nlohmann::json{{"name", "normal"}, {"held", false}, {"layer", 0}, {"functions", "basis"}, {"texel_normals", true}}));
+  EXPECT_EQ(layered[2], (nlohmann::json{{"name", "projection"}, {"held", true}, {"layer", 1}, {"functions", "projection"}, {"texel_normals", false}}));
+  EXPECT_EQ(layered[4], (nlohmann::json{{"name", "normal"}, {"held", true}, {"layer", 0}, {"functions", "basis"}, {"texel_normals", true}}));
 }
 
 }  // namespace

@@ -17,10 +17,14 @@ namespace lumitexel {
 // Atlas indices y * width + x of the texels with a material.
 std::vector<std::uint32_t> textured_texels(const Model& model);
 
-// "channels", "atlas", "centre" (m, of the mesh's box), "diagonal_m", "single", "materials", "basis_size", "principal_functions".
+// "channels", "atlas", "centre" (m, of the mesh's box), "diagonal_m", "single", and viewer_layers.h's "layers" and "stages".
 nlohmann::json viewer_model_json(const Model& model);
-// "positions", "normals", "texcoords", "triangles", "material", "texel_normals", "weights", "projection_weights", "sigma", "samples".
+// "positions", "normals", "texcoords", "triangles_low" and "_high" (of 32 bits), "textured" (by the atlas: 1 in textured_texels), those
+// of viewer_layers.h, "texel_normals", "sigma", "samples".
 void add_model_chunks(const Model& model, PackedChunks& chunks);
+
+// A map's values at the texels as half floats, a plane a channel.
+std::vector<std::uint16_t> halves_of(const Image& map, const std::vector<std::uint32_t>& texels);
 
 // A unit vector's two octahedral coordinates, 0 … 65534; kNoOctahedral twice for a zero vector.
 inline constexpr std::uint16_t kNoOctahedral = 65535;

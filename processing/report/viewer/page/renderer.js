@@ -48,8 +48,8 @@ class Renderer {
     geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
     const { triangleMap, nodeMap, nodeCount } = this.mesh, { basisMap, colourColumn } = this.basis, { normalMap, figureMap } = this.atlas.textures;
     const values = {
-      triangleMap, nodeMap, nodeCount, basisMap, colourColumn, normalMap, figureMap, weightMap: null, triangleNumberMap: this.numbers.texture,
-      surfaceOffset: 1e-5 * page.diagonal_m, atlasSize: new THREE.Vector2(page.atlas.width, page.atlas.height), clusterRow: 1,
+      triangleMap, nodeMap, nodeCount, basisMap, colourColumn, normalMap, figureMap, weightMap: null, materialMap: null, triangleNumberMap: this.numbers.texture,
+      surfaceOffset: 1e-5 * page.diagonal_m, atlasSize: new THREE.Vector2(page.atlas.width, page.atlas.height), clusterRow: 0,
       firstRow: 0, rowsPerMaterial: 0, rowCount: 0, weighted: false, texelNormals: true, shadows: true, exposure: 1, figureScale: 1, show: 0,
       eye: new THREE.Vector3(), rightward: new THREE.Vector3(), upward: new THREE.Vector3(), forward: new THREE.Vector3(),
       pictureSize: new THREE.Vector2(), focal: 1, light: new THREE.Vector3(), intensity: new THREE.Vector3(),
@@ -88,11 +88,13 @@ class Renderer {
     this.camera.updateMatrixWorld();
   }
 
+  // A stage of page.stages; its own normals with it.
   setStage(name) {
-    const { weights, ...rows } = this.basis.stages[name];
-    for (const [key, value] of Object.entries(rows)) this.uniforms[key].value = value;
-    this.uniforms.weighted.value = weights !== null;
-    this.uniforms.weightMap.value = this.atlas.textures[weights || "weights"];
+    const { weights, materials, ...values } = this.basis.stages[name], u = this.uniforms;
+    for (const [key, value] of Object.entries(values)) u[key].value = value;
+    u.weighted.value = weights !== null;
+    u.weightMap.value = this.atlas.textures[weights || "weights_0"];
+    u.materialMap.value = this.atlas.textures[materials];
   }
 
   draw(show, target = null) {

@@ -1,6 +1,7 @@
 // One pixel, as ViewRenderer (processing/model/render_view.cpp) computes it: f cos at each of the four texels around the point with
 // that texel's own normal, blended bilinearly over those that have a material.
-uniform highp sampler2D normalMap;   // xyz: unit, in world, zero: the vertex normal; w: material, -1: none
+uniform highp sampler2D normalMap;   // xyz: unit, in world, zero: the vertex normal; w: 0, or -1 in a hole of the atlas
+uniform highp sampler2D materialMap; // of the stage's layer: two bytes, one more than the material's number
 uniform highp sampler2D figureMap;   // sigma, samples, residual
 uniform highp sampler2DArray weightMap;
 uniform vec2 atlasSize;
@@ -36,7 +37,15 @@ vec3 normalAt(Texels t, int k, Point p) {
   return texelNormals && dot(normal, normal) > 0.0 ? normalize(normal) : p.vertexNormal;
 }
 
-vec3 reflectance(ivec2 at, int material, Geometry g) {
+// -1: none.
+int materialAt(ivec2 at) {
+  vec2 code = floor(texelFetch(materialMap, at, 0).rg * 255.0 + 0.5);
+  return int(code.r) + 256 * int(code.g) - 1;
+}
+
+vec3 reflectance(ivec2 at, Geometry g) {
+  int material = materialAt(at);
+  if (material < 0) return vec3(0.0);
   int row = firstRow + rowsPerMaterial * material;
   if (!weighted) return evaluateBrdf(row, g);
   vec3 sum = vec3(0.0);
@@ -60,7 +69,7 @@ vec3 radiance(Point p, Texels t) {
     if (g.cosI <= 0.0 || g.cosO <= 0.0) continue;
     if (!askedForShadow && !seesLight(p, light)) return vec3(0.0);
     askedForShadow = true;
-    sum += t.weight[k] * g.cosI * reflectance(t.at[k], int(t.normal[k].w), g);
+    sum += t.weight[k] * g.cosI * reflectance(t.at[k], g);
   }
   return sum * intensity / distance2;
 }
@@ -89,14 +98,15 @@ vec4 pixel(Point p, Texels t) {
   if (show == kRadiance) return vec4(srgb(exposure * radiance(p, t)), 1.0);
   int best = nearest(t);
   bool hole = t.weight[best] == 0.0;
-  if (show == kTexel) return hole ? vec4(-1.0, -1.0, -1.0, float(p.triangle)) : vec4(vec2(t.at[best]), t.normal[best].w, float(p.triangle));
+  int material = hole ? -1 : materialAt(t.at[best]);
+  if (show == kTexel) return vec4(hole ? vec2(-1.0) : vec2(t.at[best]), float(material), float(p.triangle));
   if (show == kNormals) {
     vec3 sum = vec3(0.0);
     for (int k = 0; k < 4; ++k) sum += t.weight[k] * normalAt(t, k, p);
     return vec4(0.5 + 0.5 * normalize(hole ? p.vertexNormal : sum), 1.0);
   }
-  if (hole) return vec4(0.25, 0.0, 0.0, 1.0);
-  if (show == kClusters) return vec4(texelFetch(basisMap, ivec2(colourColumn, clusterRow + int(t.normal[best].w)), 0).rgb, 1.0);
+  if (hole || (show == kClusters && material < 0)) return vec4(0.25, 0.0, 0.0, 1.0);
+  if (show == kClusters) return vec4(texelFetch(basisMap, ivec2(colourColumn, clusterRow + material), 0).rgb, 1.0);
   vec4 figures = vec4(0.0);
   for (int k = 0; k < 4; ++k) {
     if (t.weight[k] > 0.0) figures += t.weight[k] * texelFetch(figureMap, t.at[k], 0);

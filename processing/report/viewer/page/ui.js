@@ -22,11 +22,11 @@ class Viewer {
   fillPanel() {
     const shows = { radiance: "radiance", normals: "normals", clusters: "clusters", sigma: "uncertainty", samples: "number of samples" };
     if (page.chunks.residual) shows.residual = "residual";
-    const names = { single: "one BRDF for all", cluster: "clusters", projection: "projection", pfa: "final" };
+    const names = { single: "one BRDF for all", cluster: "clusters", projection: "mixed BRDFs", pfa: "principal functions", normal: "fitted normals" };
+    const held = page.stages.filter((stage) => stage.held);
     for (const [value, text] of Object.entries(shows)) element("show").add(new Option(text, value));
-    for (const [value, text] of Object.entries(names)) {
-      if (this.renderer.basis.stages[value]) element("stage").add(new Option(text, value, false, value === "pfa"));
-    }
+    for (const { name } of held) element("stage").add(new Option(names[name], name, false, name === held[held.length - 1].name));
+    if (this.renderer.data.texel_normals.every((code) => code === 65535)) element("normals").disabled = true;
     this.scales = {};
     for (const name of ["sigma", "samples", "residual"]) {
       if (!page.chunks[name]) continue;
@@ -71,6 +71,8 @@ class Viewer {
     this.canvas.addEventListener("pointerup", release);
   }
 
+  stage() { return page.stages.find((stage) => stage.name === element("stage").value); }
+
   // Switching between a light that goes with the camera and one that stays leaves it where it is.
   keepLight() {
     const sign = element("follow").checked ? -1 : 1;
@@ -112,7 +114,7 @@ class Viewer {
     u.intensity.value.setScalar(Math.PI * lightDistance * lightDistance);  // a white diffuse surface in the middle has radiance 1
     u.exposure.value = 2 ** Number(element("exposure").value);
     u.shadows.value = element("shadows").checked;
-    u.texelNormals.value = element("normals").value === "fitted";
+    if (element("normals").value !== "stage") u.texelNormals.value = element("normals").value === "fitted";
     u.figureScale.value = this.scales[show] || 1;
     element("exposure-text").value = (Number(element("exposure").value) >= 0 ? "+" : "") + element("exposure").value + " stops";
     element("distance-text").value = rounded(lightDistance, 3) + " m";
@@ -141,7 +143,7 @@ class Viewer {
   legend(show) {
     const units = { sigma: "relative, one sigma", samples: "samples a texel", residual: "1/sr, root mean square" };
     if (show === "clusters") {
-      element("legend").innerHTML = page.materials.map((m, i) => `<div><span class="swatch" style="background:${css(m.colour)}"></span>material ${i}</div>`).join("");
+      element("legend").innerHTML = page.layers[this.stage().layer].map((m, i) => `<div><span class="swatch" style="background:${css(m.colour)}"></span>material ${i}</div>`).join("");
     } else if (this.scales[show]) {
       element("legend").innerHTML = '<div class="bar" style="background:linear-gradient(90deg,rgb(59,31,97),rgb(33,145,140),rgb(252,232,36))"></div>' +
         `<div class="ends"><span>0</span><span>${units[show]}</span><span>${rounded(this.scales[show], 3)}</span></div>`;
@@ -156,8 +158,8 @@ class Viewer {
     this.settle();
     const scale = this.renderer.width / this.canvas.clientWidth;
     const column = Math.floor(x * scale), row = this.renderer.height - 1 - Math.floor(y * scale);
-    const [texelX, texelY, material] = this.renderer.read("texel", column, row, 1, 1);
-    element("texel").innerHTML = material < 0 ? "" : texelTable(this.renderer, texelX, texelY);
+    const [texelX, texelY] = this.renderer.read("texel", column, row, 1, 1);
+    element("texel").innerHTML = texelX < 0 ? "" : texelTable(this.renderer, texelX, texelY, this.stage());
     this.ask();
   }
 }
