@@ -10,6 +10,7 @@
 #include "processing/model/outliers.h"
 #include "processing/model/stage_errors.h"
 #include "processing/model/stage_timer.h"
+#include "processing/normals/normals_worth.h"
 #include "processing/surface/lumitexel.h"
 #include "rig/progress.h"
 
@@ -26,6 +27,7 @@ struct FitSummary {
   StageError single, cluster, projection;
   std::optional<StageError> pfa;     // if principal functions were asked for
   std::optional<StageError> normal;  // if normals were fitted
+  std::optional<NormalsWorth> normals_worth;  // if left-out photographs were asked
   Outliers outliers;                 // under the finished model
   std::vector<StageCost> stages;
 };
