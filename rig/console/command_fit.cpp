@@ -3,7 +3,7 @@
 
 #include "drivers/error.h"
 #include "processing/calibration/calibrated_session.h"
-#include "processing/model/fit_model.h"
+#include "processing/fit/fit_model.h"
 #include "processing/model/model_file.h"
 #include "rig/console/command.h"
 #include "rig/console/input_folder.h"

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "processing/model/fit_model.h"
+#include "processing/fit/fit_model.h"
 #include "processing/normals/directed_samples.h"
 #include "processing/surface/best_view.h"
 #include "processing/surface/gather_lumitexels.h"

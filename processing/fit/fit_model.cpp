@@ -1,13 +1,13 @@
-#include "processing/model/fit_model.h"
+#include "processing/fit/fit_model.h"
 
 #include <algorithm>
 
 #include "drivers/error.h"
-#include "processing/model/fill_atlas.h"
-#include "processing/model/normal_stage.h"
-#include "processing/model/observe.h"
-#include "processing/model/provenance.h"
-#include "processing/model/reflectance_stage.h"
+#include "processing/fit/fill_atlas.h"
+#include "processing/fit/normal_stage.h"
+#include "processing/fit/observe.h"
+#include "processing/fit/provenance.h"
+#include "processing/fit/reflectance_stage.h"
 #include "processing/surface/best_view.h"
 #include "processing/surface/gather_lumitexels.h"
 

@@ -1,4 +1,4 @@
-#include "processing/model/normal_stage.h"
+#include "processing/fit/normal_stage.h"
 
 namespace lumitexel {
 

@@ -1,4 +1,4 @@
-#include "processing/model/provenance.h"
+#include "processing/fit/provenance.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>

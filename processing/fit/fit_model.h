@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "processing/calibration/calibrated_session.h"
-#include "processing/model/fit_options.h"
+#include "processing/fit/fit_options.h"
 #include "processing/model/model.h"
-#include "processing/model/outliers.h"
-#include "processing/model/stage_errors.h"
-#include "processing/model/stage_timer.h"
+#include "processing/fit/outliers.h"
+#include "processing/fit/stage_errors.h"
+#include "processing/fit/stage_timer.h"
 #include "processing/normals/normals_worth.h"
 #include "processing/surface/lumitexel.h"
 #include "rig/progress.h"

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "processing/model/reflectance_stage.h"
+#include "processing/fit/reflectance_stage.h"
 
 namespace lumitexel {
 

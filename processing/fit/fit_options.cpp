@@ -1,4 +1,4 @@
-#include "processing/model/fit_options.h"
+#include "processing/fit/fit_options.h"
 
 #include <limits>
 

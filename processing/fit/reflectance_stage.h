@@ -6,7 +6,7 @@
 
 #include "processing/brdf/cluster_materials.h"
 #include "processing/brdf/project_weights.h"
-#include "processing/model/fit_model.h"
+#include "processing/fit/fit_model.h"
 #include "processing/surface/atlas.h"
 
 namespace lumitexel {

@@ -1,4 +1,4 @@
-#include "processing/model/reflectance_stage.h"
+#include "processing/fit/reflectance_stage.h"
 
 #include <oneapi/tbb/parallel_for.h>
 
@@ -10,7 +10,7 @@
 #include "processing/brdf/paper_clustering.h"
 #include "processing/brdf/principal_functions.h"
 #include "processing/brdf/select_lumitexels.h"
-#include "processing/model/fill_atlas.h"
+#include "processing/fit/fill_atlas.h"
 
 namespace lumitexel {
 namespace {
