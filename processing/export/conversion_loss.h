@@ -4,7 +4,7 @@
 #pragma once
 
 #include "processing/export/exported_maps.h"
-#include "processing/model/image_error.h"
+#include "processing/evaluation/image_error.h"
 #include "processing/model/render_view.h"
 
 namespace lumitexel {

@@ -35,6 +35,7 @@ FitOptions as_published(FitOptions options) {
   options.method = FitMethod::Paper;
   options.shared_lobe_shape = false;
   options.normals = NormalChoice::Mesh;
+  options.interreflections.wanted = false;
   options.plain_projection = options.principal_functions = true;
   return options;
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "processing/brdf/cluster_materials.h"
+#include "processing/interreflection/indirect_light.h"
 #include "processing/normals/fit_normals.h"
 
 namespace lumitexel {
@@ -19,6 +20,13 @@ enum class FitMethod {
 enum class NormalChoice { Auto, Fitted, Mesh };
 const char* to_string(NormalChoice choice);  // "auto", "fitted", "mesh"
 
+// Whether light between the object's surfaces is sought (interreflection_stage.h), and how.
+struct InterreflectionOptions {
+  bool wanted = true;
+  int rounds = 3;  // at most
+  IndirectOptions light;
+};
+
 struct FitOptions {
   std::string quality = "standard";
   FitMethod method = FitMethod::Lumitexel;
@@ -28,6 +36,7 @@ struct FitOptions {
   bool principal_functions = false;         // tried for each material, and kept where left-out lumitexels are predicted better
   NormalChoice normals = NormalChoice::Auto;
   NormalFitOptions normal_fit;
+  InterreflectionOptions interreflections;
   ErrorSource errors = ErrorSource::Auto;
   double intensity_weight = 0.3;            // s of the paper's eq. 6; only the paper's method looks at it
   std::size_t learning_lumitexels = 10000;  // that the materials are learnt on

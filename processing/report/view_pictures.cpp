@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "processing/image/tone_map.h"
-#include "processing/model/evaluate_model.h"
-#include "processing/model/image_error.h"
+#include "processing/evaluation/evaluate_model.h"
+#include "processing/evaluation/image_error.h"
 
 namespace lumitexel {
 namespace {

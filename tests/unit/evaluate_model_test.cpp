@@ -1,4 +1,4 @@
-#include "processing/model/evaluate_model.h"
+#include "processing/evaluation/evaluate_model.h"
 
 #include <gtest/gtest.h>
 
