@@ -97,6 +97,22 @@ std::string between(const std::string& text, const std::string& before, const st
   return end == std::string::npos ? "" : text.substr(start + before.size(), end - start - before.size());
 }
 
+// Of the few letters that the browser writes otherwise.
+std::string unescaped(std::string text) {
+  const std::pair<const char*, const char*> kLetters[] = {{"&lt;", "<"}, {"&gt;", ">"}, {"&nbsp;", "\u00a0"}, {"&amp;", "&"}};
+  for (const auto& [code, letter] : kLetters) {
+    for (std::size_t at = 0; (at = text.find(code, at)) != std::string::npos; at += std::strlen(letter)) text.replace(at, std::strlen(code), letter);
+  }
+  return text;
+}
+
+// What the page wrote; discarded if it wrote nothing.
+json measured_by(const std::filesystem::path& page, const json& wanted) {
+  // The browser's clock stands still while it works, so a slow machine does not end it early.
+  const std::string dumped = chromium(page, wanted, "--virtual-time-budget=20000 --dump-dom", "150");
+  return json::parse(unescaped(between(dumped, "<pre id=\"measured\">", "</pre>")), nullptr, false);
+}
+
 }  // namespace
 
 bool has_chromium() { return std::system("command -v chromium >/dev/null 2>&1") == 0; }
@@ -105,9 +121,7 @@ std::optional<std::map<FitStage, BrowserPicture>> browser_pictures(const std::fi
                                                                    const std::vector<FitStage>& stages) {
   json wanted = view_json(view);
   for (const FitStage stage : stages) wanted["stages"].push_back(to_string(stage));
-  // The browser's clock stands still while it works, so a slow machine does not end it early.
-  const std::string dumped = chromium(page, wanted, "--virtual-time-budget=20000 --dump-dom", "150");
-  const json measured = json::parse(between(dumped, "<pre id=\"measured\">", "</pre>"), nullptr, false);
+  const json measured = measured_by(page, wanted);
   if (measured.is_discarded()) return std::nullopt;
   std::map<FitStage, BrowserPicture> pictures;
   for (const FitStage stage : stages) {
@@ -115,6 +129,15 @@ std::optional<std::map<FitStage, BrowserPicture>> browser_pictures(const std::fi
     if (pictures[stage].radiance.empty() || pictures[stage].texel.empty()) return std::nullopt;
   }
   return pictures;
+}
+
+std::optional<json> browser_samples(const std::filesystem::path& page, const View& view, const std::vector<std::array<int, 2>>& texels) {
+  json wanted = view_json(view);
+  wanted["stages"] = json::array();
+  wanted["samples_at"] = texels;
+  const json measured = measured_by(page, wanted);
+  if (measured.is_discarded()) return std::nullopt;
+  return measured.at("samples");
 }
 
 std::optional<double> browser_frame_ms(const std::filesystem::path& page, const View& view, FitStage stage, int frames) {

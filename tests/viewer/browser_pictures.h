@@ -1,8 +1,10 @@
 // What the viewer's page draws, got out of headless Chromium (its software renderer) as numbers.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +25,10 @@ bool has_chromium();
 // the browser did not come up with it; `page` is the viewer's file.
 std::optional<std::map<FitStage, BrowserPicture>> browser_pictures(const std::filesystem::path& page, const View& view,
                                                                    const std::vector<FitStage>& stages);
+
+// Of a page with samples: what it says at each of the texels (page/samples.js), an array; the view only has to be one.
+std::optional<nlohmann::json> browser_samples(const std::filesystem::path& page, const View& view,
+                                              const std::vector<std::array<int, 2>>& texels);
 
 // Of the same page: milliseconds a picture while the camera turns once around, by the browser's clock.
 std::optional<double> browser_frame_ms(const std::filesystem::path& page, const View& view, FitStage stage, int frames);

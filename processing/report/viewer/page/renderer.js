@@ -13,6 +13,7 @@ class Renderer {
     this.mesh = meshTextures(data);
     this.basis = basisTexture();
     this.atlas = atlasTextures(data);
+    this.lumitexels = page.samples ? new Lumitexels(data) : null;
     this.triangles = this.triangleScene();
     this.screen = this.screenScene();
     this.setSize(1, 1);
@@ -95,6 +96,13 @@ class Renderer {
     u.weighted.value = weights !== null;
     u.weightMap.value = this.atlas.textures[weights || "weights_0"];
     u.materialMap.value = this.atlas.textures[materials];
+  }
+
+  // Of the texel; null where the mesh's serve.
+  normalOf([x, y]) {
+    const i = this.atlas.indexOf[y * page.atlas.width + x], normal = [0, 0, 0], codes = this.data.texel_normals;
+    if (i >= 0) fromOctahedral(codes[i], codes[this.data.sigma.length + i], normal, 0);
+    return normal.every((value) => value === 0) ? null : normal;
   }
 
   draw(show, target = null) {

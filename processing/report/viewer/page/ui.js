@@ -160,6 +160,8 @@ class Viewer {
     const column = Math.floor(x * scale), row = this.renderer.height - 1 - Math.floor(y * scale);
     const [texelX, texelY] = this.renderer.read("texel", column, row, 1, 1);
     element("texel").innerHTML = texelX < 0 ? "" : texelTable(this.renderer, texelX, texelY, this.stage());
+    element("samples").hidden = texelX < 0 || !page.samples;
+    if (!element("samples").hidden) element("samples").innerHTML = sampleTable(this.renderer.lumitexels.at(texelX, texelY, (texel) => this.renderer.normalOf(texel)));
     this.ask();
   }
 }
