@@ -131,6 +131,15 @@ std::optional<std::map<FitStage, BrowserPicture>> browser_pictures(const std::fi
   return pictures;
 }
 
+std::optional<std::vector<float>> browser_figures(const std::filesystem::path& page, const View& view) {
+  json wanted = view_json(view);
+  wanted["stages"] = json::array();
+  wanted["figures"] = true;
+  const json measured = measured_by(page, wanted);
+  if (measured.is_discarded()) return std::nullopt;
+  return picture(measured.at("figures"), view.camera);
+}
+
 std::optional<json> browser_samples(const std::filesystem::path& page, const View& view, const std::vector<std::array<int, 2>>& texels) {
   json wanted = view_json(view);
   wanted["stages"] = json::array();

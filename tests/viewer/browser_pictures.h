@@ -26,6 +26,9 @@ bool has_chromium();
 std::optional<std::map<FitStage, BrowserPicture>> browser_pictures(const std::filesystem::path& page, const View& view,
                                                                    const std::vector<FitStage>& stages);
 
+// As the page reads them: sigma, samples, residual and the normal's sigma of every pixel, top row first, -1 for none.
+std::optional<std::vector<float>> browser_figures(const std::filesystem::path& page, const View& view);
+
 // Of a page with samples: what it says at each of the texels (page/samples.js), an array; the view only has to be one.
 std::optional<nlohmann::json> browser_samples(const std::filesystem::path& page, const View& view,
                                               const std::vector<std::array<int, 2>>& texels);

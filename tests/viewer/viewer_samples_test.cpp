@@ -5,6 +5,7 @@
 
 #include "drivers/error.h"
 #include "processing/model/fit_model.h"
+#include "processing/model/render_view.h"
 #include "processing/report/viewer/listed_outliers.h"
 #include "processing/report/viewer/viewer_page.h"
 #include "processing/report/viewer/viewer_samples.h"
@@ -132,6 +133,56 @@ TEST(ViewerSamples, AreThinnedToTheSizeThatIsAllowed) {
   EXPECT_GE(every, 3u);
   EXPECT_LE(every, 5u);
   EXPECT_LE(some.total_bytes(), most);
+}
+
+// By a point's texels: the number of the nearest one, or blended over those that have the figure; -1 for none.
+double figure_at(const TexturedPoint& point, const Model& model, const std::vector<float>& map, bool nearest) {
+  double sum = 0.0, total = 0.0, best = 0.0, of_best = -1.0;
+  for (int i = 0; i < point.texel_count; ++i) {
+    const TexelShare& texel = point.texels[static_cast<std::size_t>(i)];
+    const auto value = static_cast<double>(map[static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(model.width) + static_cast<std::size_t>(texel.x)]);
+    if (texel.weight > best) of_best = value;
+    best = std::max(best, texel.weight);
+    if (value < 0.0) continue;
+    sum += texel.weight * value;
+    total += texel.weight;
+  }
+  if (nearest) return of_best;
+  return total > 0.0 ? sum / total : -1.0;
+}
+
+TEST(ViewerFigures, AreTheMapsAtEveryPixel) {
+  if (!has_chromium()) GTEST_SKIP() << "NOT TESTED: no chromium here to open the viewer's page with";
+  const FittedSphere& fitted = sphere();
+  const TemporaryFolder folder;
+  const ViewerSamples samples{fitted.session, fitted.records};
+  std::ofstream(folder / "page.html", std::ios::binary) << viewer_page("sphere", fitted.model, &samples).html;
+  // From the side: the photographs do not see all of this.
+  const View view = framing_view(fitted.model.mesh, 3, 150, {0.4, 1.0, 0.2}, Eigen::Vector3d::UnitZ());
+  const auto figures = browser_figures(folder / "page.html", view);
+  ASSERT_TRUE(figures.has_value());
+  const std::vector<float> maps[] = {fitted.model.uncertainty.data, fitted.model.samples.data, rms_residual(fitted.records, fitted.model), fitted.model.normal_sigma.data};
+  const ModelSurface surface(fitted.model);
+  const Eigen::Isometry3d world_from_camera = view.camera_from_world.inverse();
+  int compared = 0, without = 0, other = 0;
+  for (int y = 0; y < 150; ++y) {
+    for (int x = 0; x < 150; ++x) {
+      const auto point = surface.trace(world_from_camera.translation(), world_from_camera.linear() * view.camera.unproject({x + 0.5, y + 0.5}));
+      if (!point || point->texel_count == 0) continue;
+      for (std::size_t k = 0; k < 4; ++k) {
+        const double expected = figure_at(*point, fitted.model, maps[k], k == 1);
+        const auto found = static_cast<double>((*figures)[4 * static_cast<std::size_t>(y * 150 + x) + k]);
+        ++compared;
+        without += expected < 0.0;
+        // Half floats; texels' borders, where single precision finds another texel, and the outline are allowed for below.
+        other += std::abs(found - expected) > kHalfPrecision * std::abs(expected) + 1e-5;
+      }
+    }
+  }
+  EXPECT_GT(compared, 30000);
+  EXPECT_GT(without, 1000);
+  EXPECT_LT(without, compared / 4);
+  EXPECT_LT(other, compared / 100);
 }
 
 // What the page says of one look, against the records and the camera.

@@ -109,6 +109,7 @@ void add_model_chunks(const Model& model, PackedChunks& chunks) {
   add_normals(model, texels, chunks);
   chunks.add("sigma", halves_of(model.uncertainty, texels));
   chunks.add("samples", halves_of(model.samples, texels));
+  if (has_normals(model)) chunks.add("normal_sigma", halves_of(model.normal_sigma, texels));
 }
 
 std::array<std::uint16_t, 2> octahedral(const Eigen::Vector3d& unit) {

@@ -27,7 +27,7 @@ std::vector<std::uint32_t> textured_texels(const Model& model);
 // "channels", "atlas", "centre" (m, of the mesh's box), "box" ("low" about the centre, "size"), "diagonal_m", "single", and viewer_layers.h's "layers" and "stages".
 nlohmann::json viewer_model_json(const Model& model);
 // "positions", "normals", "texcoords", "triangles_low" and "_high" (of 32 bits), "textured" (by the atlas: 1 in textured_texels), those
-// of viewer_layers.h, "texel_normals", "sigma", "samples".
+// of viewer_layers.h, "texel_normals", "sigma", "samples", and where normals were fitted "normal_sigma".
 void add_model_chunks(const Model& model, PackedChunks& chunks);
 
 // A map's values at the texels as half floats, a plane a channel.

@@ -58,6 +58,7 @@ ViewerPage viewer_page(const std::string& title, const Model& model, const Viewe
   nlohmann::json document = viewer_model_json(model);
   std::size_t every = 0;
   if (samples != nullptr) {
+    add_residual_chunk(samples->records, model, chunks);
     every = add_samples_within(kMostSampleBytes, samples->records, model.mesh, chunks);
     document["samples"] = viewer_samples_json(samples->records, samples->session, box_of(model.mesh).centre(), every);
   }

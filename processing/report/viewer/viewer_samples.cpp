@@ -115,6 +115,13 @@ void add_sample_chunks(const LumitexelRecords& records, const Mesh& mesh, std::s
   chunks.add("reason", columns.gather<std::uint8_t>(&ViewRecords::reason, 1, [](std::uint8_t reason) { return reason; }));
 }
 
+void add_residual_chunk(const LumitexelRecords& records, const Model& model, PackedChunks& chunks) {
+  const std::vector<float> rms = rms_residual(records, model);
+  std::vector<std::uint16_t> halves;
+  for (const std::uint32_t texel : textured_texels(model)) halves.push_back(half_bits(rms[texel]));
+  chunks.add("residual", halves);
+}
+
 std::size_t add_samples_within(std::size_t most_bytes, const LumitexelRecords& records, const Mesh& mesh, PackedChunks& chunks) {
   constexpr std::size_t kTrial = 32;  // deflating is slow: a part of them says how many will fit
   PackedChunks trial;

@@ -33,6 +33,7 @@ function measure(renderer, wanted) {
     result.radiance[stage] = base64Of(renderer.read("linear"));
   }
   if (wanted.samples_at) result.samples = wanted.samples_at.map(([x, y]) => renderer.lumitexels.at(x, y, (texel) => renderer.normalOf(texel)));
+  if (wanted.figures) result.figures = base64Of(renderer.read("figures"));
   result.texel = base64Of(renderer.read("texel"));
   if (wanted.frames) console.log("frame_ms=" + frameTime(renderer, camera, wanted.frames) + ";");
   const place = document.createElement("pre");

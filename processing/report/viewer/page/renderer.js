@@ -1,5 +1,5 @@
 // Draws the model: first the number of the nearest triangle of every pixel (rasterised), then every pixel's value (shade.glsl).
-const kShow = { radiance: 0, normals: 1, clusters: 2, sigma: 3, samples: 4, residual: 5, texel: 6, linear: 7 };
+const kShow = { radiance: 0, normals: 1, clusters: 2, sigma: 3, samples: 4, residual: 5, normal_sigma: 6, texel: 7, linear: 8, figures: 9 };
 
 class Renderer {
   constructor(canvas, data) {
@@ -122,7 +122,8 @@ class Renderer {
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
-  // Four floats a pixel, bottom row first; "texel": x, y, material, triangle; "linear": radiance and 1, or 0 beside the object.
+  // Four floats a pixel, bottom row first; "texel": x, y, material, triangle; "linear": radiance and 1, or 0 beside the object;
+  // "figures": sigma, samples, residual, sigma of the normal, -1 for none.
   read(show, x = 0, y = 0, width = this.width, height = this.height) {
     const target = this.target(THREE.FloatType), values = new Float32Array(4 * width * height);
     target.setSize(this.width, this.height);

@@ -4,6 +4,9 @@ const element = (id) => document.getElementById(id);
 const rounded = (value, digits = 4) => Number(value.toPrecision(digits)).toString();
 const css = (rgb) => "rgb(" + rgb.map((x) => Math.round(255 * x)).join(",") + ")";
 
+// What is drawn in colours of a scale, and its unit.
+const kFigureUnits = { sigma: "relative, one sigma", samples: "samples a texel", residual: "1/sr, rms of the samples", normal_sigma: "degrees, one sigma" };
+
 // A direction by its angles about z: turn and height, rad.
 const direction = ({ turn, height }) =>
   new THREE.Vector3(Math.cos(height) * Math.cos(turn), Math.cos(height) * Math.sin(turn), Math.sin(height));
@@ -20,17 +23,19 @@ class Viewer {
   }
 
   fillPanel() {
-    const shows = { radiance: "radiance", normals: "normals", clusters: "clusters", sigma: "uncertainty", samples: "number of samples" };
-    if (page.chunks.residual) shows.residual = "residual";
+    const shows = { radiance: "radiance", normals: "normals", clusters: "clusters", samples: "number of samples", residual: "residual", sigma: "uncertainty", normal_sigma: "normal's uncertainty" };
     const names = { single: "one BRDF for all", cluster: "clusters", projection: "mixed BRDFs", pfa: "principal functions", normal: "fitted normals" };
     const held = page.stages.filter((stage) => stage.held);
-    for (const [value, text] of Object.entries(shows)) element("show").add(new Option(text, value));
+    for (const [value, text] of Object.entries(shows)) {
+      if (!kFigureUnits[value] || page.chunks[value]) element("show").add(new Option(text, value));
+    }
     for (const { name } of held) element("stage").add(new Option(names[name], name, false, name === held[held.length - 1].name));
     if (this.renderer.data.texel_normals.every((code) => code === 65535)) element("normals").disabled = true;
+    const { data } = this.renderer;
     this.scales = {};
-    for (const name of ["sigma", "samples", "residual"]) {
-      if (!page.chunks[name]) continue;
-      const sorted = Float32Array.from(this.renderer.data[name], fromHalf).sort();
+    for (const name of Object.keys(kFigureUnits).filter((figure) => page.chunks[figure])) {
+      // Texels that were filled in would fill the scale with what nothing is known about.
+      const sorted = Float32Array.from(data[name].filter((_, i) => data.samples[i] > 0), fromHalf).sort();
       this.scales[name] = sorted[Math.floor(0.98 * (sorted.length - 1))] || 1;
     }
   }
@@ -141,12 +146,12 @@ class Viewer {
   }
 
   legend(show) {
-    const units = { sigma: "relative, one sigma", samples: "samples a texel", residual: "1/sr, root mean square" };
     if (show === "clusters") {
       element("legend").innerHTML = page.layers[this.stage().layer].map((m, i) => `<div><span class="swatch" style="background:${css(m.colour)}"></span>material ${i}</div>`).join("");
     } else if (this.scales[show]) {
       element("legend").innerHTML = '<div class="bar" style="background:linear-gradient(90deg,rgb(59,31,97),rgb(33,145,140),rgb(252,232,36))"></div>' +
-        `<div class="ends"><span>0</span><span>${units[show]}</span><span>${rounded(this.scales[show], 3)}</span></div>`;
+        `<div class="ends"><span>0</span><span>${kFigureUnits[show]}</span><span>${rounded(this.scales[show] * (show === "normal_sigma" ? 180 / Math.PI : 1), 3)}</span></div>` +
+        (show === "residual" ? '<div><span class="swatch" style="background:rgb(89,89,89)"></span>no samples</div>' : "");
     } else {
       element("legend").innerHTML = "";
     }
