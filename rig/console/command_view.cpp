@@ -1,7 +1,9 @@
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "processing/report/viewer/viewer_page.h"
+#include "processing/report/viewer/viewer_sky.h"
 #include "rig/console/command.h"
 #include "rig/console/input_folder.h"
 #include "rig/whole_file.h"
@@ -12,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ViewSettings {
-  std::string model, session, out;
+  std::string model, session, environment, out;
 };
 
 fs::path without_slash(const fs::path& model) {
@@ -21,11 +23,14 @@ fs::path without_slash(const fs::path& model) {
 }
 
 ViewerPage page_of(const std::string& title, const Model& model, const ViewSettings& settings, CommandContext& context) {
-  if (settings.session.empty()) return viewer_page(title, model);
+  std::optional<Image> sky;
+  if (!settings.environment.empty()) sky = read_sky(settings.environment, model.channels);
+  const Image* const given_sky = sky ? &*sky : nullptr;
+  if (settings.session.empty()) return viewer_page(title, model, nullptr, given_sky);
   const CalibratedSession session = calibrate_session(session_given("--session", settings.session), context.progress);
   const LumitexelRecords records = lumitexel_records(model, session, context.progress);
   const ViewerSamples samples{session, records};
-  return viewer_page(title, model, &samples);
+  return viewer_page(title, model, &samples, given_sky);
 }
 
 std::string samples_text(std::size_t every) {
@@ -54,6 +59,8 @@ void add_view_command(CLI::App& app, CommandAction& action) {
   command->add_option("MODEL", settings->model, "Folder of the model")->required();
   command->add_option("--session", settings->session,
                       "Session that the model was fitted to: a click on the object then shows the samples of its photographs (at most 16 MB of them)");
+  command->add_option("--environment", settings->environment,
+                      "EXR of all directions, latitude against longitude, for the page's surroundings (reduced to 256 pixels across); by default a room with two soft boxes");
   command->add_option("--out", settings->out, "HTML file to write; by default beside the model, with its name");
   command->callback([settings, &action] {
     action = [settings](CommandContext& context) { return view_command(*settings, context); };

@@ -131,6 +131,19 @@ std::optional<std::map<FitStage, BrowserPicture>> browser_pictures(const std::fi
   return pictures;
 }
 
+std::optional<std::vector<std::vector<float>>> browser_sky(const std::filesystem::path& page, const View& view, FitStage stage, double turn_rad,
+                                                           const std::vector<int>& passes) {
+  json wanted = view_json(view);
+  wanted["stages"] = {to_string(stage)};
+  wanted["sky_turn_rad"] = turn_rad;
+  wanted["sky_passes"] = passes;
+  const json measured = measured_by(page, wanted);
+  if (measured.is_discarded()) return std::nullopt;
+  std::vector<std::vector<float>> pictures;
+  for (const json& text : measured.at("sky")) pictures.push_back(picture(text, view.camera));
+  return pictures;
+}
+
 std::optional<std::vector<float>> browser_figures(const std::filesystem::path& page, const View& view) {
   json wanted = view_json(view);
   wanted["stages"] = json::array();

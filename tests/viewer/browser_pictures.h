@@ -26,6 +26,11 @@ bool has_chromium();
 std::optional<std::map<FitStage, BrowserPicture>> browser_pictures(const std::filesystem::path& page, const View& view,
                                                                    const std::vector<FitStage>& stages);
 
+// The page's surroundings, turned about the world's z: after each number of passes (rising) four floats a pixel, top row first: the mean
+// radiance, and the share of the passes that met the object.
+std::optional<std::vector<std::vector<float>>> browser_sky(const std::filesystem::path& page, const View& view, FitStage stage, double turn_rad,
+                                                           const std::vector<int>& passes);
+
 // As the page reads them: sigma, samples, residual and the normal's sigma of every pixel, top row first, -1 for none.
 std::optional<std::vector<float>> browser_figures(const std::filesystem::path& page, const View& view);
 

@@ -26,7 +26,7 @@ struct ViewerSamples {
   const LumitexelRecords& records;  // of the model and the session
 };
 
-// samples: null for a page of the model alone.
-ViewerPage viewer_page(const std::string& title, const Model& model, const ViewerSamples* samples = nullptr);
+// samples: null for a page of the model alone. sky: of viewer_sky.h, at most kMostSkyWidth wide; null for the built-in one.
+ViewerPage viewer_page(const std::string& title, const Model& model, const ViewerSamples* samples = nullptr, const Image* sky = nullptr);
 
 }  // namespace lumitexel

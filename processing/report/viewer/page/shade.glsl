@@ -11,7 +11,7 @@ uniform vec3 light, intensity;  // m, W/sr
 uniform float exposure, figureScale;
 uniform int show, clusterRow, colourColumn;
 
-const int kRadiance = 0, kNormals = 1, kClusters = 2, kSigma = 3, kSamples = 4, kResidual = 5, kNormalSigma = 6, kTexel = 7, kLinear = 8, kFigures = 9;
+const int kRadiance = 0, kNormals = 1, kClusters = 2, kSigma = 3, kSamples = 4, kResidual = 5, kNormalSigma = 6, kTexel = 7, kLinear = 8, kFigures = 9, kSky = 10;
 
 struct Texels { ivec2 at[4]; float weight[4]; vec4 normal[4]; };
 
@@ -82,11 +82,6 @@ int nearest(Texels t) {
   return best;
 }
 
-vec3 srgb(vec3 linear) {
-  vec3 x = clamp(linear, 0.0, 1.0);
-  return mix(12.92 * x, 1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, greaterThan(x, vec3(0.0031308)));
-}
-
 // Dark blue over green to yellow; viewer.js draws its legend from the same numbers.
 vec3 heat(float x) {
   x = clamp(x, 0.0, 1.0);
@@ -124,13 +119,4 @@ vec4 pixel(Point p, Texels t) {
   if (show == kClusters) return vec4(texelFetch(basisMap, ivec2(colourColumn, clusterRow + material), 0).rgb, 1.0);
   float figure = figuresAt(t)[show - kSigma];
   return vec4(figure < 0.0 ? vec3(0.35) : heat(figure / figureScale), 1.0);
-}
-
-void main() {
-  Point p;
-  if (!pointAt(gl_FragCoord.xy, p)) {
-    gl_FragColor = show == kTexel || show == kLinear || show == kFigures ? vec4(-1.0, -1.0, -1.0, 0.0) : vec4(0.063, 0.071, 0.078, 1.0);
-    return;
-  }
-  gl_FragColor = pixel(p, texelsAround(p.texcoord));
 }

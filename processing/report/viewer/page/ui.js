@@ -4,6 +4,9 @@ const element = (id) => document.getElementById(id);
 const rounded = (value, digits = 4) => Number(value.toPrecision(digits)).toString();
 const css = (rgb) => "rgb(" + rgb.map((x) => Math.round(255 * x)).join(",") + ")";
 
+const kSkyPasses = 1024;  // then the noise is below what the screen shows
+const kSkyTime_ms = 20;   // a picture
+
 // What is drawn in colours of a scale, and its unit.
 const kFigureUnits = { sigma: "relative, one sigma", samples: "samples a texel", residual: "1/sr, rms of the samples", normal_sigma: "degrees, one sigma" };
 
@@ -41,8 +44,8 @@ class Viewer {
   }
 
   listen() {
-    for (const id of ["show", "stage", "normals", "shadows", "follow", "exposure", "distance"]) {
-      element(id).addEventListener("input", () => { if (id === "follow") this.keepLight(); this.ask(); });
+    for (const id of ["show", "stage", "normals", "light", "shadows", "follow", "exposure", "distance"]) {
+      element(id).addEventListener("input", () => { if (id === "follow") this.keepLight(); this.changed = this.changed || id !== "exposure"; this.ask(); });
     }
     addEventListener("resize", () => this.resize());
     this.canvas.addEventListener("contextmenu", (event) => event.preventDefault());
@@ -92,7 +95,7 @@ class Viewer {
 
   // While something moves, fewer pixels where all of them took too long; all of them 0.2 s after.
   move() {
-    this.moving = true;
+    this.moving = this.changed = true;
     clearTimeout(this.rest);
     this.rest = setTimeout(() => { this.moving = false; this.resize(); }, 200);
     this.ask();
@@ -118,10 +121,12 @@ class Viewer {
     u.light.value.copy(direction(this.lightAngles()).multiplyScalar(lightDistance));
     u.intensity.value.setScalar(Math.PI * lightDistance * lightDistance);  // a white diffuse surface in the middle has radiance 1
     u.exposure.value = 2 ** Number(element("exposure").value);
+    u.skyTurn.value = this.lightAngles().turn;  // the sky's x axis stands over where the lamp would be
     u.shadows.value = element("shadows").checked;
     if (element("normals").value !== "stage") u.texelNormals.value = element("normals").value === "fitted";
     u.figureScale.value = this.scales[show] || 1;
     element("exposure-text").value = (Number(element("exposure").value) >= 0 ? "+" : "") + element("exposure").value + " stops";
+    element("lamp-distance").hidden = element("light").value === "sky";
     element("distance-text").value = rounded(lightDistance, 3) + " m";
   }
 
@@ -129,11 +134,27 @@ class Viewer {
     this.resizeForMotion();
     const begin = performance.now();
     this.settle();
-    this.renderer.draw(element("show").value);
+    const sky = element("light").value === "sky" && element("show").value === "radiance";
+    if (sky) this.drawSky(); else this.renderer.draw(element("show").value);
     this.renderer.finish();
     this.frame_ms = performance.now() - begin;
-    element("speed").textContent = rounded(this.frame_ms, 3) + " ms for " + this.renderer.width + " x " + this.renderer.height + " pixels";
+    element("speed").textContent = rounded(this.frame_ms, 3) + " ms for " + this.renderer.width + " x " + this.renderer.height + " pixels" +
+      (sky ? ", " + this.renderer.passes + " of " + kSkyPasses + " samples a pixel" : "");
     this.legend(element("show").value);
+  }
+
+  // At least one more sample a pixel every time, as many as there is time for; all anew where something has changed.
+  drawSky() {
+    if (this.changed) this.renderer.passes = 0;
+    this.changed = false;
+    const begin = performance.now();
+    while (this.renderer.passes < kSkyPasses) {
+      this.renderer.addPass();
+      this.renderer.finish();
+      if (performance.now() - begin >= kSkyTime_ms) break;
+    }
+    this.renderer.drawMean(this.renderer.uniforms.exposure.value);
+    if (this.renderer.passes < kSkyPasses) this.ask();
   }
 
   resizeForMotion() {
