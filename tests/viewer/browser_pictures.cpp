@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "rig/whole_file.h"
 #include "tests/unit/temporary_folder.h"
 
 namespace lumitexel {
@@ -78,16 +79,16 @@ std::string percent_encoded(const std::string& text) {
   return out.str();
 }
 
-std::string chromium(const std::filesystem::path& page, const json& wanted, const std::string& options, const std::string& limit_s) {
+// What it wrote. until: a browser that shows a page does not end of itself; with this it ends once that is in its log.
+std::string chromium(const std::filesystem::path& page, const json& wanted, const std::string& options, const std::string& limit_s, const std::string& until = "") {
   const TemporaryFolder folder;
   const std::string out = (folder / "out").string();
   const std::string command = "timeout " + limit_s + " chromium --headless=new --no-sandbox --no-first-run --use-gl=angle --use-angle=swiftshader " +
                               "--enable-unsafe-swiftshader --user-data-dir=" + (folder / "profile").string() + " " + options + " 'file://" +
                               page.string() + "#measure=" + percent_encoded(wanted.dump()) + "' >" + out + " 2>" + out + ".err";
-  [[maybe_unused]] const int status = std::system(command.c_str());
-  std::ostringstream text;
-  text << std::ifstream(out, std::ios::binary).rdbuf() << std::ifstream(out + ".err", std::ios::binary).rdbuf();
-  return text.str();
+  const std::string watched = command + " & browser=$!; while kill -0 $browser 2>/dev/null && ! grep -q '" + until + "' " + out + ".err; do sleep 0.1; done; kill $browser 2>/dev/null; wait $browser 2>/dev/null";
+  [[maybe_unused]] const int status = std::system((until.empty() ? command : watched).c_str());
+  return read_whole_file(out) + read_whole_file(out + ".err");
 }
 
 std::string between(const std::string& text, const std::string& before, const std::string& after) {
@@ -166,7 +167,7 @@ std::optional<double> browser_frame_ms(const std::filesystem::path& page, const 
   json wanted = view_json(view);
   wanted["stages"] = {to_string(stage)};
   wanted["frames"] = frames;
-  const std::string log = chromium(page, wanted, "--enable-logging=stderr", "60");
+  const std::string log = chromium(page, wanted, "--enable-logging=stderr", "200", "frame_ms=");
   const std::string figure = between(log, "frame_ms=", ";");
   return figure.empty() ? std::nullopt : std::optional<double>(std::stod(figure));
 }
