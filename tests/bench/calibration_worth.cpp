@@ -10,7 +10,7 @@
 
 #include "processing/calibration/calibrated_session.h"
 #include "processing/model/evaluate_model.h"
-#include "processing/model/fit_model.h"
+#include "processing/fit/fit_model.h"
 #include "rig/session_store.h"
 #include "tests/bench/machine.h"
 

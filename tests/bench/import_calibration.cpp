@@ -15,7 +15,7 @@
 #include "processing/calibration/import/import_session.h"
 #include "processing/calibration/pose/centred_pose.h"
 #include "processing/model/evaluate_model.h"
-#include "processing/model/fit_model.h"
+#include "processing/fit/fit_model.h"
 #include "processing/surface/mesh_file.h"
 #include "rig/session_store.h"
 #include "rig/whole_file.h"

@@ -1,4 +1,4 @@
-#include "processing/model/tradeoff_settings.h"
+#include "processing/fit/tradeoff_settings.h"
 
 #include <algorithm>
 

@@ -14,6 +14,11 @@ enum class FitMethod {
   Paper       // as published (paper_clustering.h), with the plain projection
 };
 
+// Fitted: normals finer than the mesh's (section 9 of the paper), then everything once more. Auto: where left-out photographs are then
+// predicted better (normals_worth.h).
+enum class NormalChoice { Auto, Fitted, Mesh };
+const char* to_string(NormalChoice choice);  // "auto", "fitted", "mesh"
+
 struct FitOptions {
   std::string quality = "standard";
   FitMethod method = FitMethod::Lumitexel;
@@ -21,7 +26,7 @@ struct FitOptions {
   BrdfFamily family = BrdfFamily::Lafortune;
   int most_lobes = 1;                       // each must be asked for by the samples; with the paper's method it is the number
   bool principal_functions = false;         // tried for each material, and kept where left-out lumitexels are predicted better
-  bool normals = true;                      // fit normals finer than the mesh's (section 9 of the paper), then everything once more
+  NormalChoice normals = NormalChoice::Auto;
   NormalFitOptions normal_fit;
   ErrorSource errors = ErrorSource::Auto;
   double intensity_weight = 0.3;            // s of the paper's eq. 6; only the paper's method looks at it

@@ -1,4 +1,4 @@
-#include "processing/model/provenance.h"
+#include "processing/fit/provenance.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -66,7 +66,7 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
                        {"family", to_string(options.family)},
                        {"most_lobes", options.most_lobes},
                        {"principal_functions", options.principal_functions},
-                       {"normals", options.normals},
+                       {"normals", to_string(options.normals)},
                        {"intensity_weight", options.method == FitMethod::Paper ? json(options.intensity_weight) : json(nullptr)},
                        {"materials", options.materials},
                        {"learning_lumitexels", options.learning_lumitexels},
@@ -102,6 +102,12 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
     object["rms"]["normal"] = summary.normal->rms;
     object["rms_by_channel"]["normal"] = summary.normal->by_channel;
     object["rms_by_material_on_fitted_normals"] = summary.normal->by_material;
+  }
+  object["normals"] = summary.normal ? "fitted" : "mesh";
+  if (summary.normals_worth) {
+    object["normals_worth"] = {{"deviance_gain", summary.normals_worth->gain},
+                               {"deviance_gain_sigma", summary.normals_worth->gain_sigma},
+                               {"left_out_samples", summary.normals_worth->samples}};
   }
   object["outliers"] = outliers_json(summary.outliers, session);
   object["texels_by_material"] = summary.texels_by_material;

@@ -1,4 +1,4 @@
-#include "processing/model/observe.h"
+#include "processing/fit/observe.h"
 
 #include "processing/brdf/reject_samples.h"
 

@@ -5,11 +5,12 @@
 #include <vector>
 
 #include "processing/calibration/calibrated_session.h"
-#include "processing/model/fit_options.h"
+#include "processing/fit/fit_options.h"
 #include "processing/model/model.h"
-#include "processing/model/outliers.h"
-#include "processing/model/stage_errors.h"
-#include "processing/model/stage_timer.h"
+#include "processing/fit/outliers.h"
+#include "processing/fit/stage_errors.h"
+#include "processing/fit/stage_timer.h"
+#include "processing/normals/normals_worth.h"
 #include "processing/surface/lumitexel.h"
 #include "rig/progress.h"
 
@@ -26,6 +27,7 @@ struct FitSummary {
   StageError single, cluster, projection;
   std::optional<StageError> pfa;     // if principal functions were asked for
   std::optional<StageError> normal;  // if normals were fitted
+  std::optional<NormalsWorth> normals_worth;  // if left-out photographs were asked
   Outliers outliers;                 // under the finished model
   std::vector<StageCost> stages;
 };

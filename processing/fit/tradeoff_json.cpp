@@ -1,7 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "processing/model/tradeoff.h"
+#include "processing/fit/tradeoff.h"
 
 namespace lumitexel {
 namespace {

@@ -14,7 +14,7 @@
 
 #include "processing/calibration/calibrated_session.h"
 #include "processing/model/evaluate_model.h"
-#include "processing/model/tradeoff_settings.h"
+#include "processing/fit/tradeoff_settings.h"
 #include "rig/progress.h"
 
 namespace lumitexel {

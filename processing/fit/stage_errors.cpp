@@ -1,4 +1,4 @@
-#include "processing/model/stage_errors.h"
+#include "processing/fit/stage_errors.h"
 
 #include <oneapi/tbb/parallel_for.h>
 

@@ -1,10 +1,19 @@
-#include "processing/model/fit_options.h"
+#include "processing/fit/fit_options.h"
 
 #include <limits>
 
 #include "drivers/error.h"
 
 namespace lumitexel {
+
+const char* to_string(NormalChoice choice) {
+  switch (choice) {
+    case NormalChoice::Fitted: return "fitted";
+    case NormalChoice::Mesh: return "mesh";
+    case NormalChoice::Auto: break;
+  }
+  return "auto";
+}
 
 FitOptions FitOptions::preset(const std::string& quality) {
   FitOptions options;
@@ -24,7 +33,8 @@ FitOptions FitOptions::preset(const std::string& quality) {
 
 FitOptions as_published(FitOptions options) {
   options.method = FitMethod::Paper;
-  options.shared_lobe_shape = options.normals = false;
+  options.shared_lobe_shape = false;
+  options.normals = NormalChoice::Mesh;
   options.plain_projection = options.principal_functions = true;
   return options;
 }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "processing/model/fit_options.h"
+#include "processing/fit/fit_options.h"
 
 namespace lumitexel {
 

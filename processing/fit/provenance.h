@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "processing/model/fit_model.h"
+#include "processing/fit/fit_model.h"
 
 namespace lumitexel {
 

@@ -1,4 +1,4 @@
-#include "processing/model/fill_atlas.h"
+#include "processing/fit/fill_atlas.h"
 
 #include <algorithm>
 #include <numeric>

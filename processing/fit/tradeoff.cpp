@@ -1,4 +1,4 @@
-#include "processing/model/tradeoff.h"
+#include "processing/fit/tradeoff.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "drivers/error.h"
-#include "processing/model/fit_model.h"
-#include "processing/model/thinned_session.h"
+#include "processing/fit/fit_model.h"
+#include "processing/fit/thinned_session.h"
 
 namespace lumitexel {
 namespace {

@@ -1,4 +1,4 @@
-#include "processing/model/stage_timer.h"
+#include "processing/fit/stage_timer.h"
 
 #include <malloc.h>
 #include <sys/resource.h>
