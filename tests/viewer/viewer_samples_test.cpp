@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "drivers/error.h"
-#include "processing/model/fit_model.h"
+#include "processing/fit/fit_model.h"
 #include "processing/model/render_view.h"
 #include "processing/report/viewer/listed_outliers.h"
 #include "processing/report/viewer/viewer_page.h"
@@ -40,6 +40,7 @@ struct FittedSphere {
     FitOptions options = FitOptions::preset("draft");
     options.materials = 1;
     options.errors = ErrorSource::Given;
+    options.normals = NormalChoice::Fitted;
     NoProgress progress;
     model = fit_model(session, options, {}, progress).model;
     records = lumitexel_records(model, session, progress);

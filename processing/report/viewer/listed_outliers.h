@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "processing/model/outliers.h"
+#include "processing/fit/outliers.h"
 
 namespace lumitexel {
 

@@ -7,7 +7,7 @@
 #include "drivers/error.h"
 #include "processing/brdf/error_model.h"
 #include "processing/brdf/ordered_sum.h"
-#include "processing/model/observe.h"
+#include "processing/fit/observe.h"
 #include "processing/report/viewer/listed_outliers.h"
 #include "processing/surface/best_view.h"
 #include "processing/surface/gather_lumitexels.h"

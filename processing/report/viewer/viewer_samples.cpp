@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "processing/model/outliers.h"
+#include "processing/fit/outliers.h"
 #include "processing/report/viewer/viewer_model.h"
 
 namespace lumitexel {
