@@ -13,19 +13,6 @@ using nlohmann::json;
 
 constexpr double kOctahedralSteps = 65534.0;
 
-struct Box {
-  Eigen::Vector3d low, high;
-};
-
-Box box_of(const Mesh& mesh) {
-  Box box{mesh.positions.front(), mesh.positions.front()};
-  for (const Eigen::Vector3d& position : mesh.positions) {
-    box.low = box.low.cwiseMin(position);
-    box.high = box.high.cwiseMax(position);
-  }
-  return box;
-}
-
 json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 std::vector<float> flattened(const std::vector<Eigen::Vector3d>& vectors, const Eigen::Vector3d& origin) {
@@ -38,8 +25,7 @@ std::vector<float> flattened(const std::vector<Eigen::Vector3d>& vectors, const 
 }
 
 void add_mesh(const Mesh& mesh, PackedChunks& chunks) {
-  const Box box = box_of(mesh);
-  chunks.add("positions", flattened(mesh.positions, 0.5 * (box.low + box.high)));
+  chunks.add("positions", flattened(mesh.positions, box_of(mesh).centre()));
   chunks.add("normals", flattened(mesh.normals, Eigen::Vector3d::Zero()));
   std::vector<float> texcoords;
   for (const Eigen::Vector2d& texcoord : mesh.texcoords) {
@@ -74,6 +60,15 @@ double sign_of(double value) { return value < 0.0 ? -1.0 : 1.0; }
 
 }  // namespace
 
+MeshBox box_of(const Mesh& mesh) {
+  MeshBox box{mesh.positions.front(), mesh.positions.front()};
+  for (const Eigen::Vector3d& position : mesh.positions) {
+    box.low = box.low.cwiseMin(position);
+    box.high = box.high.cwiseMax(position);
+  }
+  return box;
+}
+
 std::vector<std::uint32_t> textured_texels(const Model& model) {
   std::vector<std::uint32_t> texels;
   for (std::size_t i = 0; i < model.material.size(); ++i) {
@@ -93,10 +88,11 @@ std::vector<std::uint16_t> halves_of(const Image& map, const std::vector<std::ui
 }
 
 json viewer_model_json(const Model& model) {
-  const Box box = box_of(model.mesh);
+  const MeshBox box = box_of(model.mesh);
   return {{"channels", model.channels},
           {"atlas", {{"width", model.width}, {"height", model.height}}},
-          {"centre", vector_json(0.5 * (box.low + box.high))},
+          {"centre", vector_json(box.centre())},
+          {"box", {{"low", vector_json(box.low - box.centre())}, {"size", vector_json(box.high - box.low)}}},
           {"diagonal_m", (box.high - box.low).norm()},
           {"single", brdf_json(model.single)},
           {"layers", layers_json(model)},
@@ -113,6 +109,7 @@ void add_model_chunks(const Model& model, PackedChunks& chunks) {
   add_normals(model, texels, chunks);
   chunks.add("sigma", halves_of(model.uncertainty, texels));
   chunks.add("samples", halves_of(model.samples, texels));
+  if (has_normals(model)) chunks.add("normal_sigma", halves_of(model.normal_sigma, texels));
 }
 
 std::array<std::uint16_t, 2> octahedral(const Eigen::Vector3d& unit) {

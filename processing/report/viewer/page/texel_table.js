@@ -31,13 +31,13 @@ function materialRows(data, i, { layer }) {
 }
 
 function texelTable(renderer, x, y, stage) {
-  const data = renderer.data, i = renderer.atlas.indexOf[y * page.atlas.width + x], normal = [0, 0, 0];
-  fromOctahedral(data.texel_normals[i], data.texel_normals[data.sigma.length + i], normal, 0);
+  const data = renderer.data, i = renderer.atlas.indexOf[y * page.atlas.width + x], normal = renderer.normalOf([x, y]);
   let rows = tableRow("texel", x + ", " + y);
-  rows += tableRow("normal", normal.every((v) => v === 0) ? "of the mesh" : normal.map((v) => rounded(v, 4)).join(", "));
+  rows += tableRow("normal", normal === null ? "of the mesh" : normal.map((v) => rounded(v, 4)).join(", "));
   rows += tableRow("sigma, relative", rounded(fromHalf(data.sigma[i]), 3));
   const samples = fromHalf(data.samples[i]), material = materialRows(data, i, stage);
   rows += tableRow("samples", samples === 0 ? "0 (filled in)" : samples);
-  if (data.residual) rows += tableRow("residual, 1/sr", rounded(fromHalf(data.residual[i]), 3));
+  if (data.normal_sigma) rows += tableRow("normal's sigma, deg", rounded(fromHalf(data.normal_sigma[i]) * 180 / Math.PI, 3));
+  if (data.residual && samples > 0) rows += tableRow("residual, 1/sr rms", rounded(fromHalf(data.residual[i]), 3));
   return `<table>${rows}${material.rows}</table>${material.brdf}`;
 }

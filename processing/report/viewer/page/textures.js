@@ -1,6 +1,6 @@
 // The model as textures for the shaders.
 const kRow = 2046;  // texels a row of the textures that hold lists; a multiple of 6 and of 2
-const kNoMaterial = 65535;
+const kNoMaterial = 65535, kHalfMinusOne = 0xbc00;
 
 function nearestTexture(data, width, height, type) {
   const texture = new THREE.DataTexture(data, width, height, THREE.RGBAFormat, type);
@@ -142,7 +142,8 @@ function atlasTextures(data) {
     fromOctahedral(data.texel_normals[i], data.texel_normals[texels.length + i], normals, 4 * texel);
     figures[4 * texel] = data.sigma[i];
     figures[4 * texel + 1] = data.samples[i];
-    figures[4 * texel + 2] = data.residual ? data.residual[i] : 0;
+    figures[4 * texel + 2] = data.residual ? data.residual[i] : kHalfMinusOne;
+    figures[4 * texel + 3] = data.normal_sigma ? data.normal_sigma[i] : kHalfMinusOne;
   });
   const textures = { normalMap: nearestTexture(normals, width, height, THREE.FloatType), figureMap: nearestTexture(figures, width, height, THREE.HalfFloatType) };
   page.layers.forEach((materials, layer) => {
