@@ -29,7 +29,7 @@ SumsByStage compare_view(const Model& model, const ViewRenderer& renderer, const
   std::vector<std::uint8_t> counted;
   for (const FitStage stage : kFitStages) {
     if (!holds_stage(model, stage)) continue;
-    const RenderedView rendered = predicted_view(model, renderer, view, stage);
+    const RenderedView rendered = predicted_view(renderer, view, stage);
     require_finite(view, rendered.radiance);
     if (counted.empty()) counted = object_pixels(photograph, rendered.hit);
     sums[index(stage)].add(rendered.radiance, photograph.radiance, counted);

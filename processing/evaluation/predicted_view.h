@@ -2,13 +2,12 @@
 // samples, that light as well.
 #pragma once
 
-#include "processing/model/model.h"
 #include "processing/model/render_view.h"
 
 namespace lumitexel {
 
 // Rendered at pixel centres; light between surfaces, at the model's last stage only, from `paths` a pixel (about a percent of noise in
 // it at 16).
-RenderedView predicted_view(const Model& model, const ViewRenderer& renderer, const View& view, FitStage stage, int paths = 16);
+RenderedView predicted_view(const ViewRenderer& renderer, const View& view, FitStage stage, int paths = 16);
 
 }  // namespace lumitexel

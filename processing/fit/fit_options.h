@@ -23,7 +23,7 @@ const char* to_string(NormalChoice choice);  // "auto", "fitted", "mesh"
 // Whether light between the object's surfaces is sought (interreflection_stage.h), and how.
 struct InterreflectionOptions {
   bool wanted = true;
-  int rounds = 3;  // at most
+  int rounds = 2;  // at most; the first costs no fit of its own where normals are fitted after it
   IndirectOptions light;
 };
 
@@ -47,7 +47,7 @@ struct FitOptions {
   // reflectance under everything. Both found on held-out photographs of two sessions; see the README.
   double relative_error = 0.3, error_floor_share = 0.3;
 
-  // Learning and final lumitexels. draft: 2,000, 2,000; standard: 10,000, 5,000; reference: all. Throws BadInput on any other name.
+  // Learning and final lumitexels. draft: 2,000, 2,000; standard: 10,000, 5,000; reference: all. Rounds of light between surfaces: 1, 2, 4. Throws BadInput on any other name.
   static FitOptions preset(const std::string& quality);
 };
 

@@ -184,8 +184,8 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
   command->add_option("SESSION", settings->session, "Session to fit: captured or imported")->required();
   command->add_option("--out", settings->out, "Folder of the model; a model that is there is replaced")->required();
   command->add_option("--quality", settings->quality,
-                      "draft: materials learnt on 2,000 surface points and fitted to 2,000 each; standard: 10,000 and 5,000; "
-                      "reference: all")
+                      "draft: materials learnt on 2,000 surface points and fitted to 2,000 each, light between surfaces predicted once; "
+                      "standard: 10,000 and 5,000, twice; reference: all, up to four times")
       ->capture_default_str();
   command->add_option("--materials", settings->materials, "How many materials to look for, 1 to 64, or auto: as many as the samples ask for, at most 20")->capture_default_str();
   command->add_option("--method", settings->method,

@@ -30,7 +30,7 @@ double between_corners(const std::vector<float>& at_vertex, const Mesh& mesh, co
 
 void add_view(const Model& model, const View& view, const std::vector<float>& factor, FitStage stage, Groups& groups) {
   const RadianceImage photograph = read_photograph(view, model.channels);
-  const RenderedView predicted = predicted_view(model, ViewRenderer(model), view, stage, 32);
+  const RenderedView predicted = predicted_view(ViewRenderer(model), view, stage, 32);
   const std::vector<std::uint8_t> counted = object_pixels(photograph, predicted.hit);
   groups[3].add(predicted.radiance, photograph.radiance, counted);
   const ModelSurface surface(model);
