@@ -21,16 +21,19 @@ Model textured_shell(const Model& model) {
 
 GltfMaterial filtered(const ExportedMaps& maps, const TexturedPoint& point) {
   GltfMaterial sum;
-  sum.roughness = 0.0;
+  sum.roughness = sum.specular = 0.0;
   for (int i = 0; i < point.texel_count; ++i) {
     const TexelShare& share = point.texels[static_cast<std::size_t>(i)];
     const GltfMaterial texel = decoded_texel(maps, share.x, share.y);
+    const std::array<double, 3> colour = decoded_highlight_share(maps, share.x, share.y);
     sum.roughness += share.weight * texel.roughness;
+    sum.specular += share.weight * texel.specular;
     for (std::size_t c = 0; c < 3; ++c) {
       sum.base[c] += share.weight * texel.base[c];
-      sum.f0[c] += share.weight * texel.f0[c];
+      sum.f0[c] += share.weight * colour[c];
     }
   }
+  for (double& f0 : sum.f0) f0 *= sum.specular;  // each texture is filtered, then they meet
   return sum;
 }
 

@@ -64,16 +64,18 @@ class MapWriter {
 };
 
 void add_material(MapWriter& writer, const RefittedAtlas& atlas) {
-  Image base(atlas.width, atlas.height, 3), specular = base, roughness(atlas.width, atlas.height, 1);
+  Image base(atlas.width, atlas.height, 3), specular = base, roughness(atlas.width, atlas.height, 1), factor = roughness;
   for (std::size_t t = 0; t < atlas.texels.size(); ++t) {
     for (std::size_t c = 0; c < 3; ++c) {
       base.data[3 * t + c] = static_cast<float>(atlas.texels[t].base[c]);
       specular.data[3 * t + c] = static_cast<float>(atlas.texels[t].f0[c]);
     }
+    factor.data[t] = static_cast<float>(atlas.texels[t].specular);
     roughness.data[t] = static_cast<float>(atlas.texels[t].roughness);
   }
   writer.add_colour({"base", "base colour of the diffuse light: its albedo is base * (1 - largest F)", "reflectance, 1"}, base);
-  writer.add_colour({"specular", "F0: the microfacets' reflectance seen and lit along the normal, Fresnel by Schlick", "reflectance, 1"}, specular);
+  writer.add_colour({"specular", "F0: the microfacets' reflectance seen and lit along the normal, Fresnel by Schlick up to specular_factor", "reflectance, 1"}, specular);
+  writer.add_numbers({"specular_factor", "what F becomes at grazing angles, at least specular", "1"}, factor, 1.0);
   writer.add_numbers({"roughness", "roughness r of glTF: GGX with alpha = r^2", "1"}, roughness, 1.0);
   writer.add_numbers({"metallic", "metalness of glTF: none, coloured and strong highlights stand in specular", "1"},
                      Image(atlas.width, atlas.height, 1), 1.0);

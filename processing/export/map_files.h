@@ -1,6 +1,6 @@
 // A model as plain pictures, each as EXR (32-bit floats, as is) and as 8-bit PNG, and maps.json, which says of each what it is:
 //
-//   base, specular, roughness, metallic      the refitted material (gltf_material.h); specular is F0, metallic 0 everywhere
+//   base, specular, specular_factor, roughness, metallic   the refitted material (gltf_material.h); specular is F0, metallic 0 everywhere
 //   normal_world, normal_tangent             unit vectors; in PNG (n + 1) / 2
 //   cluster                                  EXR: the material's index, 65535 where there is none; PNG: the index, 255 where there is none
 //   weight_0, …                              of the basis BRDFs of the texel's material

@@ -28,14 +28,16 @@ std::string graph(const ExportedMaps& maps) {
   std::ostringstream xml;
   xml << std::setprecision(9) << "  <nodegraph name=\"textures\">\n" << image_node("base", "color3", "base.png", "srgb_texture")
       << image_node("specular_share", "color3", "specular.png", "srgb_texture") << image_node("roughness", "float", "roughness.png", "")
+      << image_node("specular_factor", "float", "specular_factor.png", "")
       << "    <multiply name=\"specular\" type=\"color3\">\n      <input name=\"in1\" type=\"color3\" nodename=\"specular_share\"/>\n"
-      << "      <input name=\"in2\" type=\"float\" value=\"" << maps.most_f0 / kDielectricF0 << "\"/>\n    </multiply>\n";
+      << "      <input name=\"in2\" type=\"float\" value=\"" << maps.most_share / kDielectricF0 << "\"/>\n    </multiply>\n";
   if (maps.normal.channels > 0) {
     xml << image_node("coded_normal", "vector3", "normal.png", "")
         << "    <normalmap name=\"normal\" type=\"vector3\">\n      <input name=\"in\" type=\"vector3\" nodename=\"coded_normal\"/>\n    </normalmap>\n"
         << output("normal", "vector3");
   }
-  xml << output("base", "color3") << output("specular", "color3") << output("roughness", "float") << "  </nodegraph>\n";
+  xml << output("base", "color3") << output("specular", "color3") << output("roughness", "float")
+      << output("specular_factor", "float") << "  </nodegraph>\n";
   return xml.str();
 }
 
@@ -48,7 +50,8 @@ std::string document(const ExportedMaps& maps, const ConversionLoss& loss) {
   std::string xml = "<?xml version=\"1.0\"?>\n<materialx version=\"1.38\" colorspace=\"lin_rec709\">\n" + graph(maps) +
                     "  <gltf_pbr name=\"refitted\" type=\"surfaceshader\" conversion_loss='" + loss_json(loss).dump() + "'>\n" +
                     input("base_color", "color3", "base") + input("specular_color", "color3", "specular") +
-                    input("roughness", "float", "roughness") + "    <input name=\"metallic\" type=\"float\" value=\"0\"/>\n";
+                    input("specular", "float", "specular_factor") + input("roughness", "float", "roughness") +
+                    "    <input name=\"metallic\" type=\"float\" value=\"0\"/>\n";
   if (maps.normal.channels > 0) xml += input("normal", "vector3", "normal");
   return xml + "  </gltf_pbr>\n  <surfacematerial name=\"model\" type=\"material\">\n" +
          "    <input name=\"surfaceshader\" type=\"surfaceshader\" nodename=\"refitted\"/>\n  </surfacematerial>\n</materialx>\n";
@@ -75,6 +78,7 @@ void write_materialx(const std::filesystem::path& directory, const Mesh& mesh, c
   write_png8(directory / "base.png", maps.base);
   write_png8(directory / "specular.png", maps.specular);
   write_png8(directory / "roughness.png", maps.roughness);
+  write_png8(directory / "specular_factor.png", maps.specular_factor);
   if (maps.normal.channels > 0) write_png8(directory / "normal.png", maps.normal);
   write_whole_file(directory / "mesh.obj", obj_text(mesh));
   write_whole_file(directory / "model.mtlx", document(maps, loss));

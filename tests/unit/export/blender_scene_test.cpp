@@ -43,8 +43,8 @@ double psnr_in_blender_db(const Model& model) {
 
 TEST(BlenderScene, BlenderSeesWhatTheModelShows) {
   SKIP_WITHOUT_BLENDER();
-  // 16 samples, 8 bits and the diffuse light's fall at grazing angles are left; a lamp a tenth too bright would give 33 dB at most.
-  EXPECT_GT(psnr_in_blender_db(model_of(sphere_mesh(80, 40), 16, 8, glossy())), 36.0);
+  // 16 samples, 8 bits and the diffuse light's fall at grazing angles are left (58.7 dB); a lamp a tenth too bright would give 33 dB at most.
+  EXPECT_GT(psnr_in_blender_db(model_of(sphere_mesh(80, 40), 16, 8, glossy())), 50.0);
 }
 
 TEST(BlenderScene, BlenderSeesTheTexelsOwnNormals) {
@@ -58,7 +58,7 @@ TEST(BlenderScene, BlenderSeesTheTexelsOwnNormals) {
       for (int k = 0; k < 3; ++k) model.normal.at(x, y, k) = static_cast<float>(normal[k]);
     }
   }
-  EXPECT_GT(psnr_in_blender_db(model), 30.0);  // Blender bends normals that would mirror the view into the surface; ours stay
+  EXPECT_GT(psnr_in_blender_db(model), 37.0);  // 42.5: Blender bends normals that would mirror the view into the surface; ours stay
 }
 
 }  // namespace

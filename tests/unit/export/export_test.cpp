@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -72,10 +73,10 @@ Energies mean_energies(const Brdf& brdf, const GltfMaterial& material, double fr
   return mean;
 }
 
-// What is guaranteed: a Lafortune lobe's light comes back within 10 % as a mean over the viewer's angles that are fitted, up to 45 degrees. Beyond, where a
-// Lafortune lobe dims and a microfacet lobe brightens, there is too much of it; how much at most is stated and held, too.
+// What is guaranteed: a Lafortune lobe's light comes back within 5 % as a mean over the viewer's angles that are fitted, up to 45 degrees.
+// Beyond, where a Lafortune lobe dims and a microfacet lobe grows, there is too much of it; how much at most is stated and held, too.
 TEST(Export, ALafortuneLobeKeepsItsEnergyWhereItIsFittedAndItsExcessBeyondIsBounded) {
-  constexpr double kWithinFitted = 0.10, kMostExcessBeyond = 0.40, kMostExcessOverall = 0.17;  // 0.32 to 0.37, 0.15 to 0.16
+  constexpr double kWithinFitted = 0.05, kMostExcessBeyond = 0.30, kMostExcessOverall = 0.15;  // 0.25 to 0.27, 0.09 to 0.13
   for (const double exponent : {10.0, 50.0, 300.0}) {
     const double peak = 0.3 * (exponent + 2.0) / (2.0 * std::numbers::pi);  // about 0.3 of the light
     const Brdf brdf = with_lobe(BrdfFamily::Lafortune, 0.08, std::log(peak), std::log(exponent));
@@ -101,6 +102,32 @@ TEST(Export, AMixtureIsFittedAsAWhole) {
   const GltfMaterial material = MaterialRefit({dull, shiny}).fit(half);
   EXPECT_NEAR(material.roughness, 0.5, 0.03);
   EXPECT_NEAR(material.f0[0], 0.2, 0.02);
+}
+
+TEST(Export, ASurfaceWithoutHighlightsHasNoneAtGrazingEither) {
+  const GltfMaterial matte = refitted(diffuse_brdf(0.2, 0.1, 0.05));
+  EXPECT_NEAR(matte.specular, 0.0, 1e-9);
+  EXPECT_NEAR(matte.base[1], 0.1 * std::numbers::pi, 1e-6);
+  const Eigen::Vector3d wi(std::sin(1.5), 0, std::cos(1.5)), wo(-std::sin(1.5), 0, std::cos(1.5));
+  EXPECT_NEAR(evaluate(matte, lobe_geometry(Eigen::Vector3d::UnitZ(), wi, wo))[0], 0.2, 1e-6);
+}
+
+TEST(Export, HighlightsRiseAtGrazingWhereTheBrdfsDoAndNotElsewhere) {
+  EXPECT_EQ(refitted(with_lobe(BrdfFamily::Ggx, 0.1, std::log(0.02), 2.0 * std::log(0.5))).specular, 1.0);
+  const GltfMaterial steady = refitted(with_lobe(BrdfFamily::Lafortune, 0.1, std::log(3.0), std::log(50.0)));
+  EXPECT_GT(steady.f0[0], 0.01);
+  EXPECT_DOUBLE_EQ(steady.specular, *std::max_element(steady.f0.begin(), steady.f0.end()));
+}
+
+TEST(Export, TexturesGiveBackAFaintHighlightWithinTheirSteps) {
+  // F0 of some 3 % that does not rise: 8 codes of the factor alone would leave it 6 % off.
+  const Model model = model_of(square_mesh(), 4, 4, with_lobe(BrdfFamily::Lafortune, 0.1, std::log(0.3), std::log(50.0)));
+  NoProgress quiet;
+  const GltfMaterial fitted = refitted(model.materials.front().basis.front()), texel = decoded_texel(refit_maps(model, quiet), 1, 1);
+  EXPECT_LT(fitted.f0[0], 0.06);
+  EXPECT_LT(fitted.specular, 0.06);
+  EXPECT_NEAR(texel.f0[0], fitted.f0[0], 0.01 * fitted.f0[0]);
+  EXPECT_NEAR(texel.specular, fitted.specular, 1.0 / 255.0);
 }
 
 TEST(Export, TexturesHoldTheNearestMaterialBeyondTheSeam) {
