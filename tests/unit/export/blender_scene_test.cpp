@@ -5,6 +5,7 @@
 
 #include "processing/export/export_model.h"
 #include "processing/image/exr_file.h"
+#include "rig/whole_file.h"
 #include "tests/unit/plain_models.h"
 #include "tests/unit/temporary_folder.h"
 
@@ -35,6 +36,9 @@ double psnr_in_blender_db(const Model& model) {
   ErrorSums sums;
   sums.add(theirs, ours, counted);
   std::printf("Blender against the model's own rendering: PSNR %.1f dB\n", sums.error().psnr_db);
+  char said[80];  // what the scene says of itself
+  std::snprintf(said, sizeof said, "PSNR against reference.exr: %.1f dB", sums.error().psnr_db);
+  EXPECT_NE(read_whole_file(folder / "log").find(said), std::string::npos) << said;
   return sums.error().psnr_db;
 }
 
