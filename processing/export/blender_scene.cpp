@@ -244,9 +244,7 @@ void write_blender_scene(const std::filesystem::path& directory, const Model& mo
   write_whole_file(directory / "mesh.bin", mesh_bytes(model.mesh));
   write_whole_file(directory / "scene.json", scene_json(model, maps, loss, view).dump(1) + "\n");
   write_whole_file(directory / "scene.py", kScript);
-  RenderOptions options;
-  options.samples_per_pixel = 16;
-  write_exr_colour(directory / "reference.exr", ViewRenderer(model).render(view, options).radiance);
+  write_reference(directory / "reference.exr", model, view);
 }
 
 }  // namespace lumitexel

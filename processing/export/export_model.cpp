@@ -5,6 +5,7 @@
 #include "processing/export/gltf_file.h"
 #include "processing/export/map_files.h"
 #include "processing/export/materialx_file.h"
+#include "processing/export/mitsuba_scene.h"
 
 namespace lumitexel {
 
@@ -13,12 +14,14 @@ ExportFormat export_format_from_string(const std::string& name) {
   if (name == "maps") return ExportFormat::Maps;
   if (name == "blender") return ExportFormat::Blender;
   if (name == "materialx") return ExportFormat::Materialx;
-  throw BadInput("--to", "'" + name + "'", "gltf, maps, blender or materialx");
+  if (name == "mitsuba") return ExportFormat::Mitsuba;
+  throw BadInput("--to", "'" + name + "'", "gltf, maps, blender, materialx or mitsuba");
 }
 
 const char* main_file(ExportFormat format) {
   if (format == ExportFormat::Blender) return "scene.py";
   if (format == ExportFormat::Materialx) return "model.mtlx";
+  if (format == ExportFormat::Mitsuba) return "scene.xml";
   return format == ExportFormat::Gltf ? "model.gltf" : "maps.json";
 }
 
@@ -31,7 +34,8 @@ ConversionLoss export_model(const Model& model, ExportFormat format, const std::
   if (model.channels != 1 && model.channels != 3) {
     throw BadInput("model", std::to_string(model.channels) + " channels", "one, or three taken for red, green and blue");
   }
-  const RefittedAtlas atlas = refit_atlas(model, progress);
+  const MaterialForm form = format == ExportFormat::Mitsuba ? MaterialForm::Mitsuba : MaterialForm::Gltf;
+  const RefittedAtlas atlas = refit_atlas(model, form, progress);
   const ExportedMaps maps = textures_of(atlas);
   const ConversionLoss loss = conversion_loss(model, maps, progress);
   fs::create_directories(directory);
@@ -39,6 +43,7 @@ ConversionLoss export_model(const Model& model, ExportFormat format, const std::
   if (format == ExportFormat::Maps) write_map_files(directory, model, atlas, loss);
   if (format == ExportFormat::Blender) write_blender_scene(directory, model, atlas, maps, loss);
   if (format == ExportFormat::Materialx) write_materialx(directory, model.mesh, maps, loss);
+  if (format == ExportFormat::Mitsuba) write_mitsuba_scene(directory, model, maps, loss);
   return loss;
 }
 

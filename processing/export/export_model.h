@@ -13,8 +13,9 @@ enum class ExportFormat {
   Maps,  // map_files.h
   Blender,  // blender_scene.h
   Materialx,  // materialx_file.h
+  Mitsuba,  // mitsuba_scene.h
 };
-ExportFormat export_format_from_string(const std::string& name);  // "gltf", "maps", "blender", "materialx"; throws BadInput
+ExportFormat export_format_from_string(const std::string& name);  // "gltf", "maps", "blender", "materialx", "mitsuba"; throws BadInput
 // The file that another program opens first.
 const char* main_file(ExportFormat format);
 

@@ -29,9 +29,9 @@ std::array<double, 3> highlight_shares(const GltfMaterial& texel) {
   return shares;
 }
 
-std::vector<GltfMaterial> refit_texels(const Model& model, Progress& progress) {
+std::vector<GltfMaterial> refit_texels(const Model& model, MaterialForm form, Progress& progress) {
   std::vector<MaterialRefit> refits;
-  for (const ModelMaterial& material : model.materials) refits.emplace_back(material.basis);
+  for (const ModelMaterial& material : model.materials) refits.emplace_back(material.basis, form);
   std::vector<GltfMaterial> texels(model.material.size());
   progress.begin("refitting texels", model.height, "rows");
   std::atomic<int> done = 0;
@@ -50,12 +50,12 @@ std::vector<GltfMaterial> refit_texels(const Model& model, Progress& progress) {
 
 }  // namespace
 
-RefittedAtlas refit_atlas(const Model& model, Progress& progress) {
-  const std::vector<GltfMaterial> fitted = refit_texels(model, progress);
+RefittedAtlas refit_atlas(const Model& model, MaterialForm form, Progress& progress) {
+  const std::vector<GltfMaterial> fitted = refit_texels(model, form, progress);
   std::vector<std::uint8_t> known(model.material.size());
   for (std::size_t t = 0; t < known.size(); ++t) known[t] = model.material[t] != Model::kNoMaterial ? 1 : 0;
   const std::vector<std::size_t> source = nearest_known_texel(model.width, model.height, known);
-  RefittedAtlas atlas{model.width, model.height, {}, export_normals(model)};
+  RefittedAtlas atlas{form, model.width, model.height, {}, export_normals(model, form)};
   atlas.texels.reserve(fitted.size());
   for (const std::size_t from : source) atlas.texels.push_back(fitted[from]);
   return atlas;
@@ -63,10 +63,11 @@ RefittedAtlas refit_atlas(const Model& model, Progress& progress) {
 
 ExportedMaps textures_of(const RefittedAtlas& atlas) {
   const int width = atlas.width, height = atlas.height;
-  ExportedMaps maps{Image(width, height, 3), Image(width, height, 3), Image(width, height, 1), Image(width, height, 1), {}};
+  ExportedMaps maps{atlas.form, Image(width, height, 3), Image(width, height, 3), Image(width, height, 1), Image(width, height, 1), {}};
   for (const GltfMaterial& texel : atlas.texels) {
     for (const double share : highlight_shares(texel)) maps.most_share = std::max(maps.most_share, share);
   }
+  if (atlas.form == MaterialForm::Mitsuba) maps.most_share = 1.0;
   for (std::size_t t = 0; t < atlas.texels.size(); ++t) {
     const GltfMaterial& texel = atlas.texels[t];
     const std::array<double, 3> shares = highlight_shares(texel);
@@ -82,7 +83,7 @@ ExportedMaps textures_of(const RefittedAtlas& atlas) {
   return maps;
 }
 
-ExportedMaps refit_maps(const Model& model, Progress& progress) { return textures_of(refit_atlas(model, progress)); }
+ExportedMaps refit_maps(const Model& model, Progress& progress, MaterialForm form) { return textures_of(refit_atlas(model, form, progress)); }
 
 Image coded_normals(const Image& normals) {
   Image coded = normals;

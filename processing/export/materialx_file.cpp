@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "processing/export/loss_json.h"
+#include "processing/export/obj_file.h"
 #include "processing/image/raster_file.h"
 #include "rig/whole_file.h"
 
@@ -57,21 +58,6 @@ std::string document(const ExportedMaps& maps, const ConversionLoss& loss) {
          "    <input name=\"surfaceshader\" type=\"surfaceshader\" nodename=\"refitted\"/>\n  </surfacematerial>\n</materialx>\n";
 }
 
-// Positions, texture coordinates and normals share their numbers, which OBJ counts from 1.
-std::string obj_text(const Mesh& mesh) {
-  std::ostringstream obj;
-  obj << std::setprecision(9);
-  for (const Eigen::Vector3d& p : mesh.positions) obj << "v " << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
-  for (const Eigen::Vector2d& uv : mesh.texcoords) obj << "vt " << uv.x() << ' ' << uv.y() << '\n';
-  for (const Eigen::Vector3d& n : mesh.normals) obj << "vn " << n.x() << ' ' << n.y() << ' ' << n.z() << '\n';
-  for (const auto& triangle : mesh.triangles) {
-    obj << 'f';
-    for (const std::uint32_t vertex : triangle) obj << ' ' << vertex + 1 << '/' << vertex + 1 << '/' << vertex + 1;
-    obj << '\n';
-  }
-  return obj.str();
-}
-
 }  // namespace
 
 void write_materialx(const std::filesystem::path& directory, const Mesh& mesh, const ExportedMaps& maps, const ConversionLoss& loss) {
@@ -80,7 +66,7 @@ void write_materialx(const std::filesystem::path& directory, const Mesh& mesh, c
   write_png8(directory / "roughness.png", maps.roughness);
   write_png8(directory / "specular_factor.png", maps.specular_factor);
   if (maps.normal.channels > 0) write_png8(directory / "normal.png", maps.normal);
-  write_whole_file(directory / "mesh.obj", obj_text(mesh));
+  write_obj(directory / "mesh.obj", mesh);
   write_whole_file(directory / "model.mtlx", document(maps, loss));
 }
 

@@ -65,29 +65,30 @@ Pair bounded_minimum(double dd, double ds, double ss, double d, double s) {
 
 }  // namespace
 
-MaterialRefit::MaterialRefit(const std::vector<Brdf>& basis) {
+MaterialRefit::MaterialRefit(const std::vector<Brdf>& basis, MaterialForm form) : form_(form) {
   const std::vector<Direction> directions = sampled_directions();
   std::vector<BasisValues> values(basis.size());
   for (const Direction& direction : directions) {
     for (std::size_t k = 0; k < basis.size(); ++k) values[k].push_back(three_channels(basis[k], direction.geometry));
   }
   for (const double rise : kRises) {
+    if (rise > 0.0 && form == MaterialForm::Mitsuba) continue;
     for (int i = 0; i < kRoughnesses; ++i) tables_.push_back(table_of((i + 1.0) / kRoughnesses, rise, directions, values));
   }
 }
 
 MaterialRefit::Table MaterialRefit::table_of(double roughness, double rise, const std::vector<Direction>& directions,
-                                             const std::vector<BasisValues>& values) {
+                                             const std::vector<BasisValues>& values) const {
   Table table;
   table.roughness = roughness;
   table.rise = rise;
   table.with_basis.resize(values.size());
   table.offset_basis.resize(values.size());
   for (std::size_t n = 0; n < directions.size(); ++n) {
-    const GltfFacets facets = gltf_facets(roughness, directions[n].geometry);
-    const double fall = rise * facets.fall;
-    const double diffuse = 1.0 - fall, specular = facets.value * (1.0 - fall);
-    const double offset = facets.value * fall, cos_i = directions[n].geometry.cos_i;
+    const GltfFacets highlight = facets(form_, roughness, directions[n].geometry);
+    const double fall = rise * highlight.fall;
+    const double diffuse = 1.0 - fall, specular = highlight.value * (1.0 - fall);
+    const double offset = highlight.value * fall, cos_i = directions[n].geometry.cos_i;
     const double weight = directions[n].weight * cos_i * cos_i;
     table.dd += weight * diffuse * diffuse;
     table.ds += weight * diffuse * specular;
