@@ -6,7 +6,8 @@
 //   weight_0, …                              of the basis BRDFs of the texel's material
 //   uncertainty, samples                     as in the model
 //
-// maps.json: {"width", "height", "rows": "top first", "texel_centre", "mesh", "conversion_loss", "maps": [{"name", "exr", "png", "what",
+// maps.json: {"width", "height", "rows": "top first", "texel_centre", "mesh", "conversion_loss", "conversion_loss_of",
+// "maps": [{"name", "of": the refitted material, which has the loss, or the model, which has none in EXR, "exr", "png", "what",
 // "unit", "exr_colour_space", "png_colour_space", "png_full_scale": what code 255 stands for, "png_zero": what code 0 does}]}. Beside them mesh.ply.
 #pragma once
 

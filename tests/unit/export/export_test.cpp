@@ -7,6 +7,7 @@
 #include "processing/export/export_model.h"
 #include "processing/export/refit.h"
 #include "processing/image/raster_file.h"
+#include "rig/whole_file.h"
 #include "tests/unit/bad_input_matcher.h"
 #include "tests/unit/plain_models.h"
 #include "tests/unit/temporary_folder.h"
@@ -153,6 +154,31 @@ TEST(Export, GltfStatesTheLossAndItsBufferIsWhole) {
   EXPECT_EQ(document.at("accessors").at(0).at("count"), model.mesh.positions.size());
   EXPECT_EQ(read_raster(out / "base.png").code_values.at(1, 1, 0), std::round(255.0f * refit_maps(model, quiet).base.at(1, 1, 0)));
   EXPECT_THROW(export_model(model, ExportFormat::Gltf, out, quiet), BadInput) << "nothing is overwritten";
+}
+
+class StatedLoss : public testing::TestWithParam<std::pair<ExportFormat, const char*>> {};
+
+TEST_P(StatedLoss, StandsInTheFile) {
+  const TemporaryFolder folder;
+  NoProgress quiet;
+  const Model model = model_of(sphere_mesh(12, 6), 4, 4, with_lobe(BrdfFamily::Lafortune, 0.1, std::log(2.0), std::log(50.0)));
+  const ConversionLoss loss = export_model(model, GetParam().first, folder / "out", quiet);
+  std::string text = read_whole_file(folder / "out" / GetParam().second);
+  text.erase(std::remove(text.begin(), text.end(), ' '), text.end());  // JSON with and without blanks
+  EXPECT_NE(text.find("\"psnr_db\":" + nlohmann::json(loss.error.psnr_db).dump()), std::string::npos) << text.substr(0, 2000);
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, StatedLoss,
+                         testing::Values(std::pair(ExportFormat::Blender, "scene.json"), std::pair(ExportFormat::Materialx, "model.mtlx"),
+                                         std::pair(ExportFormat::Mitsuba, "scene.xml"), std::pair(ExportFormat::Maps, "maps.json")));
+
+TEST(Export, AFolderThatCannotBeMadeIsNamedBeforeTheWork) {
+  const TemporaryFolder folder;
+  write_whole_file(folder / "file", "");
+  NoProgress quiet;
+  const Model model = model_of(square_mesh(), 4, 4, diffuse_brdf(0.1, 0.1, 0.1));
+  EXPECT_BAD_INPUT(export_model(model, ExportFormat::Gltf, folder / "file/below", quiet), "below", "a folder that can be written to");
+  EXPECT_BAD_INPUT(export_format_from_string("ply"), "ply", "mitsuba");
 }
 
 }  // namespace
