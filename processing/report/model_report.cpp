@@ -40,7 +40,7 @@ std::string model_report(const ReportSubject& subject, Progress& progress) {
   body += sample_error_section(provenance);
   if (compared) body += photograph_error_section(*subject.evaluation);
   body += material_section(subject, renderer);
-  body += nearest_section(nearest_json(subject));
+  body += nearest_section(subject);
   body += coverage_section(subject.model, renderer, map_view(subject));
   body += outlier_section(provenance);
   if (subject.session != nullptr) body += setup_section(*subject.session);

@@ -42,6 +42,6 @@ std::string coverage_section(const Model& model, const ViewRenderer& renderer, c
 
 // ---- known materials (report_nearest.cpp)
 nlohmann::json nearest_json(const ReportSubject& subject);  // a list a material, the three nearest: {"name", "distance"}
-std::string nearest_section(const nlohmann::json& nearest);   // empty where none is known
+std::string nearest_section(const ReportSubject& subject);     // empty where none is known
 
 }  // namespace lumitexel

@@ -106,9 +106,11 @@ TEST_F(ModelReport, NamesTheNearestKnownMaterialAndSaysHowNearItIs) {
   NoProgress progress;
   ReportSubject subject{"bird", model_};
   subject.known = known;
+  subject.known_source = "the blackboard & chalk database";
   const std::string html = model_report(subject, progress);
   EXPECT_THAT(html, HasSubstr("hardly to be told apart"));
   EXPECT_THAT(html, HasSubstr("same (0)"));
+  EXPECT_THAT(html, HasSubstr("beside the 2 of the blackboard &amp; chalk database"));
   EXPECT_THAT(html, HasSubstr("chalk &lt;white&gt; ("));
   const auto nearest = nlohmann::json::parse(report_json(subject)).at("nearest_materials");
   EXPECT_EQ(nearest[0][0].at("name"), "same");
