@@ -23,8 +23,8 @@ struct ReportSubject {
 };
 
 // The page. Every number on it is also in its <script type="application/json" id="data">: {"summary": the sentences on top,
-// "evaluation": as `lumitexel evaluate --json` or null, "provenance": the fit's, "texels_by_material": [texels that were fitted to
-// samples], "coverage": of the texels and their sigma, "nearest_materials": [three for each material]}.
+// "stages": the fit's, "evaluation": as `lumitexel evaluate --json` or null, "provenance": the fit's, "texels_by_material": [texels that were fitted to
+// samples], "coverage": of the texels and their sigma, "normals": tilts and sigmas or null, "nearest_materials": [three for each material]}.
 std::string report_json(const ReportSubject& subject);
 std::string model_report(const ReportSubject& subject, Progress& progress);
 
