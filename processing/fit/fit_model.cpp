@@ -6,6 +6,7 @@
 #include "processing/fit/fill_atlas.h"
 #include "processing/fit/interreflection_stage.h"
 #include "processing/fit/normal_stage.h"
+#include "processing/fit/normal_trial.h"
 #include "processing/fit/observe.h"
 #include "processing/fit/provenance.h"
 #include "processing/fit/reflectance_stage.h"

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "processing/fit/fit_options.h"
+#include "processing/fit/normals_worth.h"
 #include "processing/fit/outliers.h"
 #include "processing/fit/stage_errors.h"
 #include "processing/fit/stage_timer.h"
-#include "processing/normals/normals_worth.h"
 #include "processing/surface/lumitexel.h"
 
 namespace lumitexel {

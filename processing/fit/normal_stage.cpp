@@ -1,5 +1,6 @@
 #include "processing/fit/normal_stage.h"
 
+#include "processing/fit/normal_trial.h"
 #include "processing/normals/sigma_scale.h"
 
 namespace lumitexel {
@@ -14,8 +15,7 @@ std::optional<FittedNormals> seek_normals(const CalibratedSession& session, cons
   if (options.normals == NormalChoice::Auto) {
     timer.begin("are normals worth it");
     progress.begin("are normals worth it", 1, "trials");
-    summary.normals_worth =
-        normals_worth(session, inputs.lumitexels, inputs.atlas.width, bases, label, median, options.normal_fit);
+    summary.normals_worth = try_normals(session, inputs, bases, label);
     progress.update(1);
     if (!summary.normals_worth->enough()) return {};
   }
@@ -30,13 +30,6 @@ std::optional<FittedNormals> seek_normals(const CalibratedSession& session, cons
     sigma = static_cast<float>(std::min(*summary.normal_sigma_scale * static_cast<double>(sigma), options.normal_fit.prior.coarse_sigma_rad));
   }
   return fitted;
-}
-
-void turn(const std::vector<Eigen::Vector3d>& normals, LumitexelSet& lumitexels) {
-  std::size_t i = 0;
-  for (LumitexelTile& tile : lumitexels.tiles) {
-    for (Eigen::Vector3d& normal : tile.normal) normal = normals[i++];
-  }
 }
 
 void keep_before_normals(Model& model, FitSummary& summary) {

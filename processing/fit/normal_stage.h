@@ -12,8 +12,6 @@ namespace lumitexel {
 std::optional<FittedNormals> seek_normals(const CalibratedSession& session, const FitInputs& inputs, const std::vector<int>& label,
                                           const Model& model, FitSummary& summary, StageTimer& timer, Progress& progress);
 
-// normals: one a lumitexel, in world.
-void turn(const std::vector<Eigen::Vector3d>& normals, LumitexelSet& lumitexels);
 // What stands in the model so far becomes its stages before normals.
 void keep_before_normals(Model& model, FitSummary& summary);
 // Texels without a lumitexel have the mesh's normal, which is as good as the prior says.

@@ -17,7 +17,32 @@ void copy_lumitexel(const LumitexelTile& from, std::size_t i, std::size_t channe
   to.first_sample.push_back(static_cast<std::uint32_t>(to.samples()));
 }
 
+LumitexelTile only_views(const LumitexelTile& from, std::size_t channels, const std::vector<bool>& used) {
+  LumitexelTile to;
+  to.position = from.position;
+  to.normal = from.normal;
+  to.texel = from.texel;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    for (std::size_t s = from.first_sample[i]; s < from.first_sample[i + 1]; ++s) {
+      if (!used[from.view[s]]) continue;
+      to.view.push_back(from.view[s]);
+      for (std::size_t c = 0; c < channels; ++c) {
+        to.reflectance.push_back(from.reflectance[s * channels + c]);
+        to.variance.push_back(from.variance[s * channels + c]);
+      }
+    }
+    to.first_sample.push_back(static_cast<std::uint32_t>(to.samples()));
+  }
+  return to;
+}
+
 }  // namespace
+
+LumitexelSet only_views(const LumitexelSet& lumitexels, const std::vector<bool>& used) {
+  LumitexelSet result{lumitexels.channels, {}};
+  for (const LumitexelTile& tile : lumitexels.tiles) result.tiles.push_back(only_views(tile, static_cast<std::size_t>(lumitexels.channels), used));
+  return result;
+}
 
 LumitexelBands lumitexel_bands(const LumitexelSet& lumitexels, int atlas_width, std::size_t wanted) {
   const std::size_t every = (lumitexels.size() + wanted - 1) / wanted;

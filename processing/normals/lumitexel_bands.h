@@ -16,4 +16,7 @@ struct LumitexelBands {
 // At most about `wanted` lumitexels, in bands of 32 rows evenly over the atlas; all of them where there are no more.
 LumitexelBands lumitexel_bands(const LumitexelSet& lumitexels, int atlas_width, std::size_t wanted);
 
+// The same lumitexels with the samples of these views alone. used: one entry a view of the session.
+LumitexelSet only_views(const LumitexelSet& lumitexels, const std::vector<bool>& used);
+
 }  // namespace lumitexel

@@ -1,0 +1,160 @@
+#include "processing/fit/normal_trial.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "processing/fit/observe.h"
+#include "processing/normals/lumitexel_bands.h"
+
+namespace lumitexel {
+namespace {
+
+constexpr std::size_t kLeftOutEvery = 5;
+constexpr std::size_t kMostLumitexels = 40000;
+constexpr std::size_t kMostLearnt = 2000;   // lumitexels that the trial's materials are learnt on
+constexpr std::size_t kFewestSamples = 50;  // of a block of the surface in one photograph
+
+// Of the photographs that the fit may see, those that the trial does not.
+std::vector<bool> left_out_views(const CalibratedSession& session) {
+  std::vector<bool> left_out(session.views.size(), false);
+  std::size_t seen = 0;
+  for (std::size_t v = 0; v < left_out.size(); ++v) {
+    if (!session.views[v].heldout) left_out[v] = seen++ % kLeftOutEvery == kLeftOutEvery / 2;
+  }
+  return left_out;
+}
+
+struct Cell {
+  double gain = 0;  // sum of deviances on the mesh's normals less those on fitted ones
+  std::size_t samples = 0;
+};
+using Cells = std::map<std::pair<std::uint32_t, std::uint16_t>, Cell>;  // by block and photograph
+
+// What a fit to some of the photographs makes of the others: the deviance of each left-out sample that is above its surface on either normal.
+class Arm {
+ public:
+  Arm(const CalibratedSession& session, const FitInputs& inputs, const LumitexelSet& learnt, const LumitexelSet& left_out)
+      : observations_(observe(session, learnt)), left_out_(left_out) {
+    FitOptions options = inputs.options;
+    options.learning_lumitexels = std::min(options.learning_lumitexels, kMostLearnt);
+    options.final_lumitexels = std::min(options.final_lumitexels, kMostLearnt);
+    FitSummary summary;
+    StageTimer timer;
+    NoProgress quiet;
+    reflectance_ = fit_reflectance({inputs.atlas, learnt, observations_, options, inputs.error}, "", model_, summary, timer, quiet);
+    for (const ModelMaterial& material : model_.materials) prepared_.emplace_back(material.basis.begin(), material.basis.end());
+    for (const View& view : session.views) eyes_.push_back(view.camera_in_world());
+  }
+
+  // Of sample s of lumitexel i of a tile of the left-out set, i being number `lumitexel` of all.
+  double deviance_of(const CalibratedSession& session, const ErrorModel& error, std::size_t t, std::size_t i, std::size_t s,
+                     std::size_t lumitexel) const {
+    const LumitexelTile& tile = left_out_.tiles[t];
+    const auto channels = static_cast<std::size_t>(left_out_.channels);
+    const LobeGeometry geometry = lobe_geometry(tile.normal[i], session.views[tile.view[s]].light.direction_from(tile.position[i]),
+                                                (eyes_[tile.view[s]] - tile.position[i]).normalized());
+    ChannelValues predicted{};
+    const std::vector<float>& weight = reflectance_.weights[lumitexel].weight;
+    const std::vector<PreparedBrdf>& basis = prepared_[static_cast<std::size_t>(reflectance_.clustering.label[lumitexel])];
+    if (geometry.cos_i > 0.0 && geometry.cos_o > 0.0) {
+      for (std::size_t k = 0; k < weight.size(); ++k) {
+        const ChannelValues value = predicted_reflectance(basis[k], geometry);
+        for (std::size_t c = 0; c < channels; ++c) predicted[c] += static_cast<double>(weight[k]) * value[c];
+      }
+    }
+    Observation sample;
+    for (std::size_t c = 0; c < channels; ++c) {
+      sample.reflectance[c] = tile.reflectance[s * channels + c];
+      sample.variance[c] = tile.variance[s * channels + c];
+    }
+    return deviance(error, sample_misfit(error, sample, left_out_.channels, predicted), left_out_.channels);
+  }
+
+ private:
+  Observations observations_;
+  const LumitexelSet& left_out_;
+  Model model_;
+  Reflectance reflectance_;
+  std::vector<std::vector<PreparedBrdf>> prepared_;
+  std::vector<Eigen::Vector3d> eyes_;
+};
+
+// Cells count by their samples; their scatter about the mean says how sure the mean is.
+NormalsWorth mean_gain(const Cells& cells) {
+  NormalsWorth worth;
+  double squares = 0.0, count = 0.0, sum = 0.0;
+  for (const auto& [place, cell] : cells) {
+    if (cell.samples < kFewestSamples) continue;
+    sum += cell.gain;
+    worth.samples += cell.samples;
+    count += 1.0;
+  }
+  if (count < 2.0) return {0.0, 0.0, worth.samples};
+  worth.gain = sum / static_cast<double>(worth.samples);
+  for (const auto& [place, cell] : cells) {
+    if (cell.samples < kFewestSamples) continue;
+    const double off = cell.gain - worth.gain * static_cast<double>(cell.samples);
+    squares += off * off;
+  }
+  worth.gain_sigma = std::sqrt(squares * count / (count - 1.0)) / static_cast<double>(worth.samples);
+  return worth;
+}
+
+bool finite(const LumitexelTile& tile, std::size_t sample, std::size_t channels) {
+  for (std::size_t c = 0; c < channels; ++c) {
+    if (!std::isfinite(tile.reflectance[sample * channels + c]) || !std::isfinite(tile.variance[sample * channels + c])) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void turn(const std::vector<Eigen::Vector3d>& normals, LumitexelSet& lumitexels) {
+  std::size_t i = 0;
+  for (LumitexelTile& tile : lumitexels.tiles) {
+    for (Eigen::Vector3d& normal : tile.normal) normal = normals[i++];
+  }
+}
+
+NormalsWorth try_normals(const CalibratedSession& session, const FitInputs& inputs, const std::vector<std::vector<Brdf>>& bases,
+                         const std::vector<int>& label) {
+  const LumitexelBands bands = lumitexel_bands(inputs.lumitexels, inputs.atlas.width, kMostLumitexels);
+  const std::vector<bool> left_out_view = left_out_views(session);
+  if (std::count(left_out_view.begin(), left_out_view.end(), true) == 0) return {};
+  std::vector<bool> learnt_view = left_out_view;
+  learnt_view.flip();
+  std::vector<int> own_label;
+  for (const std::size_t i : bands.lumitexel) own_label.push_back(label[i]);
+
+  LumitexelSet learnt = only_views(bands.set, learnt_view), left_out = only_views(bands.set, left_out_view);
+  if (learnt.samples() == 0 || left_out.samples() == 0) return {};
+  LumitexelSet turned = learnt, left_out_turned = left_out;
+  {
+    const DirectedLumitexels directed(session, learnt);
+    const FittedNormals fitted = fit_normals(directed, lumitexel_neighbours(directed, inputs.atlas.width), bases, own_label,
+                                             median_reflectance(inputs.observations), inputs.options.normal_fit);
+    turn(fitted.normal, turned);
+    turn(fitted.normal, left_out_turned);
+  }
+  const Arm on_mesh(session, inputs, learnt, left_out), on_fitted(session, inputs, turned, left_out_turned);
+
+  Cells cells;
+  std::size_t number = 0;
+  const auto channels = static_cast<std::size_t>(left_out.channels);
+  for (std::size_t t = 0; t < left_out.tiles.size(); ++t) {
+    const LumitexelTile& tile = left_out.tiles[t];
+    for (std::size_t i = 0; i < tile.size(); ++i, ++number) {
+      for (std::size_t s = tile.first_sample[i]; s < tile.first_sample[i + 1]; ++s) {
+        if (!finite(tile, s, channels)) continue;
+        Cell& cell = cells[{bands.block[number], tile.view[s]}];
+        cell.gain += on_mesh.deviance_of(session, inputs.error, t, i, s, number) - on_fitted.deviance_of(session, inputs.error, t, i, s, number);
+        ++cell.samples;
+      }
+    }
+  }
+  return mean_gain(cells);
+}
+
+}  // namespace lumitexel

@@ -1,0 +1,47 @@
+#include "processing/fit/normal_trial.h"
+
+#include <gtest/gtest.h>
+
+#include "processing/fit/observe.h"
+#include "tests/unit/normals/normal_patch.h"
+
+namespace lumitexel {
+namespace {
+
+NormalsWorth trial(const NormalPatch& patch) {
+  Atlas atlas;
+  atlas.width = atlas.height = patch.width;
+  const Observations observations = observe(patch.session, patch.lumitexels);
+  FitOptions options = FitOptions::preset("draft");
+  options.materials = 1;
+  const ErrorModel error = error_model(observations, options);
+  return try_normals(patch.session, {atlas, patch.lumitexels, observations, options, error}, patch.bases, patch.label);
+}
+
+int said_yes(double slope_rms_rad, int seeds) {
+  int yes = 0;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    const NormalsWorth found = trial(make_patch({64, 10, slope_rms_rad, 0.05, static_cast<unsigned>(seed)}));
+    yes += found.enough();
+    std::printf("slope %.2f, seed %d: gain %.4f +- %.4f\n", slope_rms_rad, seed, found.gain, found.gain_sigma);
+  }
+  return yes;
+}
+
+// 64 texels square: eight parts to compare, four in each of two photographs. 19 of 20 each.
+TEST(NormalTrial, AnExactMeshKeepsItsNormals) { EXPECT_LE(said_yes(0.0, 20), 1); }
+TEST(NormalTrial, ABumpySurfaceGetsItsOwn) { EXPECT_GE(said_yes(0.05, 20), 19); }
+
+TEST(NormalTrial, OnePhotographDecidesNothing) {
+  const NormalsWorth found = trial(make_patch({20, 1, 0.05, 0.05, 1}));
+  EXPECT_FALSE(found.enough());
+}
+
+TEST(NormalTrial, HeldOutPhotographsAreNotLookedAt) {
+  NormalPatch patch = make_patch({40, 10, 0.05, 0.05, 1});
+  for (View& view : patch.session.views) view.heldout = true;
+  EXPECT_EQ(trial(patch).samples, 0u);
+}
+
+}  // namespace
+}  // namespace lumitexel
