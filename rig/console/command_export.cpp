@@ -1,9 +1,12 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <utility>
 
 #include "processing/export/export_model.h"
+#include "processing/export/moved_model.h"
 #include "processing/model/model_file.h"
+#include "processing/surface/mesh_file.h"
 #include "rig/console/command.h"
 
 namespace lumitexel {
@@ -19,12 +22,13 @@ constexpr const char* kFormats =
     "maps: every map as EXR and PNG, told apart in maps.json, with mesh.ply";
 
 struct ExportSettings {
-  std::string model, to, out;
+  std::string model, to, out, mesh;
 };
 
 CommandResult export_command(const ExportSettings& settings, CommandContext& context) {
   const ExportFormat format = export_format_from_string(settings.to);
-  const Model model = read_model(settings.model);
+  Model model = read_model(settings.model);
+  if (!settings.mesh.empty()) model = on_moved_mesh(std::move(model), read_mesh(settings.mesh), settings.mesh);
   const ConversionLoss loss = export_model(model, format, settings.out, context.progress);
   CommandResult result;
   const bool finite = std::isfinite(loss.error.psnr_db);
@@ -47,6 +51,8 @@ void add_export_command(CLI::App& app, CommandAction& action) {
   CLI::App* command = app.add_subcommand("export", "Write a model for other programs, and how much of its look that costs");
   command->add_option("MODEL", settings->model, "Folder of the model")->required();
   command->add_option("--to", settings->to, kFormats)->required();
+  command->add_option("--mesh", settings->mesh,
+                      "The model's own mesh.ply with its vertices moved, such as a frame of an animation: the maps go onto it, normals turn with it");
   command->add_option("--out", settings->out, "New or empty folder to write into")->required();
   command->callback([settings, &action] {
     action = [settings](CommandContext& context) { return export_command(*settings, context); };

@@ -148,7 +148,7 @@ TEST(FitNormals, HaveTheSameBitsForAnyNumberOfThreads) {
 // Two planes that meet: neighbours across the edge are no reason to round it.
 TEST(FitNormals, KeepAnEdge) {
   const int side = 40;
-  const NormalPatch patch = make_patch({side, 12, 0.0, 0.02, 5, 0.2});
+  const NormalPatch patch = make_patch({side, 12, 0.0, 0.02, 5, 0.0, 0.2});
   const FittedNormals fitted = fit(patch);
   double beside = 0.0;
   for (int y = 5; y < side - 5; ++y) {

@@ -94,9 +94,11 @@ NormalPatch make_patch(const PatchSettings& settings) {
       LumitexelTile& tile = patch.lumitexels.tiles.back();
       const Eigen::Vector3d position(kSpacing_m * (x - 0.5 * settings.side), kSpacing_m * (y - 0.5 * settings.side), 0.0);
       const double ridge = std::tan(settings.ridge_rad) * (2 * x < settings.side ? -1.0 : 1.0);
-      patch.truth.push_back((normal_at(surface, x, y) + ridge * Eigen::Vector3d::UnitX()).normalized());
+      const double half = 0.5 * settings.side;
+      const Eigen::Vector3d bent = settings.bend * Eigen::Vector3d((x - half) / half, (y - half) / half, 0.0);
+      patch.truth.push_back((normal_at(surface, x, y) + ridge * Eigen::Vector3d::UnitX() + bent).normalized());
       tile.position.push_back(position);
-      tile.normal.push_back(Eigen::Vector3d::UnitZ());
+      tile.normal.push_back((Eigen::Vector3d::UnitZ() + bent).normalized());
       tile.texel.push_back(static_cast<std::uint32_t>(y * settings.side + x));
       add_samples(patch, prepared, position, patch.truth.back(), settings.noise, random, tile);
       tile.first_sample.push_back(static_cast<std::uint32_t>(tile.samples()));

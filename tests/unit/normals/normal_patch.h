@@ -15,6 +15,7 @@ struct PatchSettings {
   double slope_rms_rad = 0.07;  // of the true normals from the mesh's, per axis
   double noise = 0.03;       // relative, of every sample
   unsigned seed = 1;
+  double bend = 0.0;         // how far the mesh's own normals lean outwards at the sides, as a slope: a curved object shows its BRDF at many angles
   double ridge_rad = 0.0;    // two planes that fall away on both sides of the middle, this steep
 };
 

@@ -21,16 +21,22 @@ NormalsWorth trial(const NormalPatch& patch) {
 int said_yes(double slope_rms_rad, int seeds) {
   int yes = 0;
   for (int seed = 1; seed <= seeds; ++seed) {
-    const NormalsWorth found = trial(make_patch({64, 10, slope_rms_rad, 0.05, static_cast<unsigned>(seed)}));
+    const NormalsWorth found = trial(make_patch({64, 15, slope_rms_rad, 0.05, static_cast<unsigned>(seed), 1.0}));
     yes += found.enough();
     std::printf("slope %.2f, seed %d: gain %.4f +- %.4f\n", slope_rms_rad, seed, found.gain, found.gain_sigma);
   }
   return yes;
 }
 
-// 64 texels square: eight parts to compare, four in each of two photographs. 19 of 20 each.
-TEST(NormalTrial, AnExactMeshKeepsItsNormals) { EXPECT_LE(said_yes(0.0, 20), 1); }
-TEST(NormalTrial, ABumpySurfaceGetsItsOwn) { EXPECT_GE(said_yes(0.05, 20), 19); }
+// 64 texels square: twelve parts to compare, four in each of three photographs.
+TEST(NormalTrial, AnExactMeshKeepsItsNormals) { EXPECT_EQ(said_yes(0.0, 5), 0); }
+TEST(NormalTrial, ABumpySurfaceGetsItsOwn) { EXPECT_EQ(said_yes(0.07, 5), 5); }
+
+// The campaign behind the two: --gtest_also_run_disabled_tests --gtest_filter='*HundredSeeds'.
+TEST(NormalTrial, DISABLED_HundredSeeds) {
+  EXPECT_LE(said_yes(0.0, 100), 5);
+  EXPECT_GE(said_yes(0.07, 100), 95);
+}
 
 TEST(NormalTrial, OnePhotographDecidesNothing) {
   const NormalsWorth found = trial(make_patch({20, 1, 0.05, 0.05, 1}));
