@@ -81,7 +81,37 @@ std::string sensor_section(const SensorSummary& sensor, std::int64_t hot_pixels)
                        html::table({"", "value", "sigma"}, rows) + html::table({"", ""}, darks) + notes_list(sensor.notes));
 }
 
-std::string views_section(const CalibrationSummary& summary) {
+std::string share_bars(const CalibrationSummary& summary) {
+  std::string bars;
+  for (const UncertaintyShare& share : summary.shares) {
+    const std::string percent = html::number(100.0 * share.share, 3);
+    bars += "<span>" + html::escaped(share.quantity + ": " + share.source) +
+            "</span><span class=\"track\"><div class=\"fill\" style=\"width:" + percent +
+            "%\"></div></span><span class=\"value\">" + percent + " %</span>";
+  }
+  return bars.empty() ? "" : "<h3>What its variance comes from</h3><div class=\"bars\">" + bars + "</div>";
+}
+
+std::string scale_section(const CalibrationSummary& summary) {
+  Rows rows;
+  for (std::size_t c = 0; c < summary.intensity.size(); ++c) {
+    rows.push_back({"channel " + std::to_string(c), html::number(summary.intensity[c], 6),
+                    html::number(100.0 * summary.scale_sigma, 2) + " %"});
+  }
+  const LampSummary& lamp = summary.lamp;
+  std::ostringstream text;
+  text << "The point light's intensity by the gray card, whose pose comes from: " << lamp.card_source << ". The card was read in "
+       << lamp.card_views << " views (" << lamp.card_outliers << " of the readings do not fit). The lamp "
+       << (lamp.drifts ? "drifts" : "is steady as far as can be told") << "; "
+       << (lamp.at_10_deg ? "10 degrees off its axis it gives " + html::number(*lamp.at_10_deg, 4) + " of its intensity."
+                          : "no angular pattern was needed or measured.");
+  return html::section("Scale and lamp", text.str(),
+                       html::table({"", "intensity", "sigma"}, rows) + share_bars(summary));
+}
+
+}  // namespace
+
+std::string calibrated_views_section(const CalibrationSummary& summary) {
   Rows rows;
   for (std::size_t v = 0; v < summary.lights.size(); ++v) {
     const LightSummary& light = summary.lights[v];
@@ -113,23 +143,11 @@ std::string views_section(const CalibrationSummary& summary) {
           "</div>" + notes_list(strays));
 }
 
-std::string share_bars(const CalibrationSummary& summary) {
-  std::string bars;
-  for (const UncertaintyShare& share : summary.shares) {
-    const std::string percent = html::number(100.0 * share.share, 3);
-    bars += "<span>" + html::escaped(share.quantity + ": " + share.source) +
-            "</span><span class=\"track\"><div class=\"fill\" style=\"width:" + percent +
-            "%\"></div></span><span class=\"value\">" + percent + " %</span>";
-  }
-  return bars.empty() ? "" : "<h3>What its variance comes from</h3><div class=\"bars\">" + bars + "</div>";
-}
-
-// Imported: poses given elsewhere, held against the masks.
-std::string given_section(const CalibrationSummary& summary) {
+std::string given_poses_section(const CalibrationSummary& summary) {
   Rows rows;
   for (const PoseSummary& pose : summary.poses) {
     rows.push_back({pose.view, pose.source, measured(pose.given_px), measured(pose.silhouette_px), measured(pose.contradiction, 1.0, 4),
-                    measured(pose.sigma_m, 1e3), measured(pose.sigma_deg), pose.dominant, html::escaped(pose.problem)});
+                    measured(pose.sigma_m, 1e3), measured(pose.sigma_deg), pose.dominant, pose.problem});
   }
   std::string text =
       "Poses were given with the session. One is replaced only if its silhouette contradicts it: by a chi-square with six degrees of "
@@ -148,31 +166,12 @@ std::string given_section(const CalibrationSummary& summary) {
                            "</div>" + share_bars(summary));
 }
 
-std::string scale_section(const CalibrationSummary& summary) {
-  Rows rows;
-  for (std::size_t c = 0; c < summary.intensity.size(); ++c) {
-    rows.push_back({"channel " + std::to_string(c), html::number(summary.intensity[c], 6),
-                    html::number(100.0 * summary.scale_sigma, 2) + " %"});
-  }
-  const LampSummary& lamp = summary.lamp;
-  std::ostringstream text;
-  text << "The point light's intensity by the gray card, whose pose comes from: " << lamp.card_source << ". The card was read in "
-       << lamp.card_views << " views (" << lamp.card_outliers << " of the readings do not fit). The lamp "
-       << (lamp.drifts ? "drifts" : "is steady as far as can be told") << "; "
-       << (lamp.at_10_deg ? "10 degrees off its axis it gives " + html::number(*lamp.at_10_deg, 4) + " of its intensity."
-                          : "no angular pattern was needed or measured.");
-  return html::section("Scale and lamp", text.str(),
-                       html::table({"", "intensity", "sigma"}, rows) + share_bars(summary));
-}
-
-}  // namespace
-
 std::string calibration_report(const CalibratedSession& session, const CalibrationSummary& summary,
                                const std::filesystem::path& pictures, const std::string& truth_text,
                                const std::string& data_json) {
   std::string body = "<header><h1>Calibration</h1><p>" + std::to_string(session.views.size()) +
                      " views. Every sigma is one standard deviation; a dash means: not measured.</p></header>";
-  if (!session.views.empty()) body += summary.intensity.empty() ? given_section(summary) : views_section(summary);
+  if (!session.views.empty()) body += summary.intensity.empty() ? given_poses_section(summary) : calibrated_views_section(summary);
   if (!summary.intensity.empty()) body += scale_section(summary);
   if (!summary.lens.params.empty()) body += lens_section(summary, pictures);
   if (summary.sensor.electrons_per_dn > 0) body += sensor_section(summary.sensor, summary.hot_pixels);

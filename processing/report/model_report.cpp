@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "processing/calibration/calibration_summary_json.h"
 #include "processing/model/render_view.h"
 #include "processing/report/html.h"
 #include "processing/report/page_style.h"
@@ -22,6 +23,8 @@ Json page_data(const ReportSubject& subject) {
           {"texels_by_material", texels_by_material(subject.model)},
           {"coverage", coverage_json(subject.model)},
           {"normals", normals_json(subject.model)},
+          {"exposures", exposures_json(subject.exposures)},
+          {"calibration", subject.calibration != nullptr ? summary_json(*subject.calibration) : Json(nullptr)},
           {"nearest_materials", nearest_json(subject)}};
 }
 
@@ -53,6 +56,8 @@ std::string model_report(const ReportSubject& subject, Progress& progress) {
   body += coverage_section(subject.model, renderer, map_view(subject));
   body += outlier_section(provenance);
   if (subject.session != nullptr) body += setup_section(*subject.session);
+  body += exposure_section(subject.exposures);
+  if (subject.calibration != nullptr) body += calibration_section(*subject.calibration);
   body += timing_section(provenance) + definitions_section();
   return html::page(subject.name + " – Lumitexel report", kPageStyle, body, data.dump(1));
 }

@@ -35,7 +35,13 @@ std::string definitions_section();
 std::string comparison_section(const ReportSubject& subject, const ViewRenderer& renderer, Progress& progress);
 std::string material_section(const ReportSubject& subject, const ViewRenderer& renderer);
 View map_view(const ReportSubject& subject);  // as the first photograph shown sees the object, filling the picture
+
+// ---- how it was photographed (report_setup.cpp)
 std::string setup_section(const CalibratedSession& session);
+// A list a photograph; null where a session does not know.
+nlohmann::json exposures_json(const std::vector<PhotographExposure>& exposures);
+std::string exposure_section(const std::vector<PhotographExposure>& exposures);  // empty of none
+std::string calibration_section(const CalibrationSummary& summary);
 
 // ---- coverage and uncertainty (report_maps.cpp)
 // {"texels", "texels_measured", "samples_a_texel": {"tenth", "median", "most"}, "relative_sigma": {"median", "nine_tenths"}}, over the texels
