@@ -116,7 +116,7 @@ std::string calibrated_views_section(const CalibrationSummary& summary) {
   for (std::size_t v = 0; v < summary.lights.size(); ++v) {
     const LightSummary& light = summary.lights[v];
     const PoseSummary pose = v < summary.poses.size() ? summary.poses[v] : PoseSummary{};
-    const bool lamp = v < summary.lamp.factor.size();
+    const bool lamp = v < summary.lamp.factor.size() && v < summary.lamp.factor_sigma.size() && summary.lamp.factor_sigma[v] > 0.0;
     rows.push_back({light.view, measured(pose.silhouette_px), measured(pose.sigma_m, 1e3), measured(pose.sigma_deg),
                     std::to_string(pose.tags), pose.dominant, html::number(1e3 * light.sigma_m),
                     std::to_string(light.highlights), light.from_spheres ? "spheres and arm" : "arm alone",
@@ -133,9 +133,9 @@ std::string calibrated_views_section(const CalibrationSummary& summary) {
   const std::string problem =
       summary.pose_problem.empty() ? "" : " Poses are the rig description's: " + summary.pose_problem;
   return html::section(
-      "Views",
-      "One sigma each. Silhouette: median distance between the mesh's outline and the photograph's. Lamp: output over "
-      "that at the gray card." + problem,
+      "Poses and lights",
+      "How surely it is known where object and lamp stood; pose, light and the last column are one sigma. Silhouette: median distance between "
+      "the mesh's outline and the photograph's. Lamp: output over that at the gray card; a dash where it was taken to be steady." + problem,
       "<div class=\"scroll\">" +
           html::table({"view", "silhouette, px", "pose, mm", "pose, °", "tags", "mostly from", "light, mm", "highlights",
                        "light from", "lamp", "sigma"},

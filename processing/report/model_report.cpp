@@ -22,6 +22,7 @@ Json page_data(const ReportSubject& subject) {
           {"provenance", provenance},
           {"texels_by_material", texels_by_material(subject.model)},
           {"coverage", coverage_json(subject.model)},
+          {"uncertainty_from", doubt_json(subject)},
           {"normals", normals_json(subject.model)},
           {"exposures", exposures_json(subject.exposures)},
           {"calibration", subject.calibration != nullptr ? summary_json(*subject.calibration) : Json(nullptr)},
@@ -54,6 +55,7 @@ std::string model_report(const ReportSubject& subject, Progress& progress) {
   body += nearest_section(subject);
   body += normals_section(subject, data.at("normals"), renderer, map_view(subject));
   body += coverage_section(subject.model, renderer, map_view(subject));
+  body += doubt_section(subject, data.at("uncertainty_from"), map_view(subject));
   body += outlier_section(provenance);
   if (subject.session != nullptr) body += setup_section(*subject.session);
   body += exposure_section(subject.exposures);

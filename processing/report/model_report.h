@@ -28,7 +28,7 @@ struct ReportSubject {
 
 // The page. Every number on it is also in its <script type="application/json" id="data">: {"summary": the sentences on top,
 // "stages": the fit's, "evaluation": as `lumitexel evaluate --json` or null, "provenance": the fit's, "texels_by_material": [texels that were fitted to
-// samples], "coverage": of the texels and their sigma, "normals": tilts and sigmas or null, "exposures": a photograph each, "calibration": as `lumitexel calibrate --json` has it or null, "nearest_materials": [three for each material]}.
+// samples], "coverage": of the texels and their sigma, "uncertainty_from": shares by cause or null, "normals": tilts and sigmas or null, "exposures": a photograph each, "calibration": as `lumitexel calibrate --json` has it or null, "nearest_materials": [three for each material]}.
 std::string report_json(const ReportSubject& subject);
 std::string model_report(const ReportSubject& subject, Progress& progress);
 

@@ -49,6 +49,11 @@ std::string calibration_section(const CalibrationSummary& summary);
 nlohmann::json coverage_json(const Model& model);
 std::string coverage_section(const Model& model, const ViewRenderer& renderer, const View& view);
 
+// ---- what it comes from (report_doubt.cpp)
+// {"points": asked, "shares": {"normal", "no highlight", "few samples", "scatter"}, "by_material": the same a material}; null without a session.
+nlohmann::json doubt_json(const ReportSubject& subject);
+std::string doubt_section(const ReportSubject& subject, const nlohmann::json& doubt, const View& view);
+
 // ---- fitted normals (report_normals.cpp)
 // {"texels_measured", "texels_on_the_meshs_normal", "within_deg", "tilt_against_mesh_deg" and "sigma_deg": {"median", "nine_tenths", "most"}}
 // over the texels that were fitted to samples; null of a model without fitted normals.

@@ -99,7 +99,7 @@ Json exposures_json(const std::vector<PhotographExposure>& exposures) {
 
 std::string setup_section(const CalibratedSession& session) {
   return html::section("Cameras and lights",
-                       "Where the camera (triangles, pointing where it looks) and the lamp (circles) stood for each photograph, in the mesh's "
+                       "Where the camera (the tip of a triangle, which opens towards what it sees) and the lamp (circles) stood for each photograph, in the mesh's "
                        "frame: there the object stands still, even if on the bench it was the object that turned. Blue: used in the fit. Brown: "
                        "held out. Gray: the object. Point at a mark to read its photograph's name. Directional lights are drawn at the rim.",
                        "<div class=\"row two\">" + html::figure(plan_drawing(session, 0, 1), "Along the world's z axis") +
@@ -111,7 +111,7 @@ std::string exposure_section(const std::vector<PhotographExposure>& exposures) {
   const bool brackets = std::any_of(exposures.begin(), exposures.end(), [](const PhotographExposure& e) { return !e.exposure_s.empty(); });
   const std::string source =
       brackets ? "Each photograph was merged from a bracket of exposures; apart: how many stops (doublings) lie between its shortest and its "
-                 "longest. Clipped: too bright even for the shortest. Below noise: too dark even for the longest; such values still count, "
+                 "longest. Clipped: too bright even for the shortest. Below noise: too dark even for the longest, as in shadow; such values still count, "
                  "with their uncertainty."
                : "These photographs were made elsewhere and came as finished pictures: the session knows no exposure times and no noise. "
                  "Clipped: at the top of the file's range; a picture of floating-point numbers has no top, so that 0 says nothing there.";

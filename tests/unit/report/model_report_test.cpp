@@ -70,7 +70,7 @@ TEST_F(ModelReport, NeedsNothingButItself) {
   for (std::size_t at = html.find("src="); at != std::string::npos; at = html.find("src=", at + 1), ++pictures) {
     EXPECT_EQ(html.substr(at, 33), "src=\"data:image/png;base64,iVBORw") << "a PNG's first bytes";
   }
-  EXPECT_EQ(pictures, 9u) << "photograph and rendering on top; photograph, rendering, difference, map, sphere, coverage, uncertainty";
+  EXPECT_EQ(pictures, 10u) << "photograph and rendering on top; photograph, rendering, difference, map, sphere, coverage, uncertainty, its causes";
 }
 
 TEST_F(ModelReport, SaysTheNumbersOfTheFitAndOfTheComparison) {
