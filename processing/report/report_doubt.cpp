@@ -98,10 +98,10 @@ std::string doubt_section(const ReportSubject& subject, const Json& data, const 
   rows.push_back(row_of("all", data.at("shares")));
   const std::string picture = html::picture(picture_of(ModelSurface(subject.model), *subject.session, view), "what the uncertainty mostly comes from");
   return html::section("What the uncertainty mostly comes from",
-                       "One cause a point, the first of this list that applies. It says what another session would have to change. Judged from where "
+                       "One cause a point, the first of this list that applies: a diagnosis by rule, not a division of the variance. It says what another session would have to change. Judged from where "
                        "cameras and lamps stood and from the model itself" +
                            std::string(has_normals(subject.model) ? "." : "; normals were not fitted, so that nothing is known of their part."),
-                       "<div class=\"row two\"><div>" + html::figure(picture, "The side of the first picture shown above.") + "</div><div>" + key_list() +
+                       "<div class=\"row two\"><div>" + html::figure(picture, "The same side as in the maps above.") + "</div><div>" + key_list() +
                            "</div></div>" + html::table(header, rows));
 }
 
