@@ -1,11 +1,12 @@
 #include "processing/normals/directed_samples.h"
 
 #include <cmath>
+#include <utility>
 
 namespace lumitexel {
 
-DirectedLumitexels::DirectedLumitexels(const CalibratedSession& session, const LumitexelSet& lumitexels)
-    : session_(session), lumitexels_(lumitexels), size_(lumitexels.size()) {
+DirectedLumitexels::DirectedLumitexels(const CalibratedSession& session, const LumitexelSet& lumitexels, std::vector<bool> used)
+    : session_(session), lumitexels_(lumitexels), used_(std::move(used)), size_(lumitexels.size()) {
   for (const View& view : session.views) eyes_.push_back(view.camera_in_world());
 }
 
@@ -15,6 +16,7 @@ void DirectedLumitexels::samples_of(std::size_t lumitexel, std::vector<DirectedS
   const std::size_t i = within(lumitexel);
   const auto channels = static_cast<std::size_t>(lumitexels_.channels);
   for (std::size_t s = from.first_sample[i]; s < from.first_sample[i + 1]; ++s) {
+    if (!used_.empty() && !used_[from.view[s]]) continue;
     DirectedSample sample;
     bool finite = true;
     for (std::size_t c = 0; c < channels; ++c) {

@@ -19,7 +19,8 @@ struct DirectedSample {
 // Keeps references to session and lumitexels.
 class DirectedLumitexels {
  public:
-  DirectedLumitexels(const CalibratedSession& session, const LumitexelSet& lumitexels);
+  // used: for each of the session's views, whether its samples are given; empty: all are.
+  DirectedLumitexels(const CalibratedSession& session, const LumitexelSet& lumitexels, std::vector<bool> used = {});
 
   std::size_t size() const { return size_; }
   int channels() const { return lumitexels_.channels; }
@@ -35,6 +36,7 @@ class DirectedLumitexels {
 
   const CalibratedSession& session_;
   const LumitexelSet& lumitexels_;
+  std::vector<bool> used_;
   std::vector<Eigen::Vector3d> eyes_;
   std::size_t size_;
 };

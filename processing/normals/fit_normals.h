@@ -1,6 +1,8 @@
 // The normals of a whole object from its materials: the step of section 9 of the paper, for all lumitexels together.
 #pragma once
 
+#include <functional>
+
 #include "processing/brdf/cluster_materials.h"
 #include "processing/normals/smooth_normals.h"
 
@@ -20,8 +22,13 @@ struct FittedNormals {
   std::vector<float> sigma_rad;         // one sigma per tangent axis
 };
 
+// Materials as the search for normals weighs their samples.
+std::vector<NormalMaterial> normal_materials(const std::vector<std::vector<Brdf>>& bases, int channels, double median_reflectance,
+                                             const NormalFitOptions& options);
+
 // bases: of each material, as texels mix them. label: material of each lumitexel. median_reflectance: 1/sr.
 FittedNormals fit_normals(const DirectedLumitexels& lumitexels, const Neighbours& neighbours, const std::vector<std::vector<Brdf>>& bases,
-                          const std::vector<int>& label, double median_reflectance, const NormalFitOptions& options);
+                          const std::vector<int>& label, double median_reflectance, const NormalFitOptions& options,
+                          const std::function<void(int)>& after_step = [](int) {});
 
 }  // namespace lumitexel

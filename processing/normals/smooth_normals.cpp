@@ -188,16 +188,11 @@ Steps solve(const NormalProblem& problem, const Loops& loops, const LinearSystem
   return x;
 }
 
-void take(const NormalProblem& problem, const LinearSystem& system, const Steps& steps, double largest_rad, NormalField& field) {
-  Buffers buffers;
-  oneapi::tbb::parallel_for(std::size_t{0}, steps.size(), [&](std::size_t i) {
+void take(const LinearSystem& system, const Steps& steps, double largest_rad, NormalField& field) {
+  for_each_block(steps.size(), [&](std::size_t i) {
     const double length = steps[i].norm();
     const double share = length > largest_rad ? largest_rad / length : 1.0;
     field.normal[i] = moved(field.normal[i], system.frame[i], share * steps[i]);
-    std::vector<DirectedSample>& samples = buffers.local();
-    problem.lumitexels.samples_of(i, samples);
-    field.weights[i].weight =
-        best_weights(problem.material_of(i), field.weights[i].weight, field.normal[i], samples, problem.lumitexels.channels());
   });
 }
 
@@ -230,6 +225,26 @@ Steps random_right(const NormalProblem& problem, const Loops& loops, const Linea
 }
 
 }  // namespace
+
+NormalField field_on_mesh(const NormalProblem& problem) {
+  NormalField field{std::vector<Eigen::Vector3d>(problem.lumitexels.size()), std::vector<TexelWeights>(problem.lumitexels.size())};
+  for (std::size_t i = 0; i < field.normal.size(); ++i) {
+    field.normal[i] = problem.lumitexels.coarse_normal(i);
+    field.weights[i].weight.assign(problem.material_of(i).basis.size(), 0.0f);
+    field.weights[i].weight[0] = 1.0f;
+  }
+  return field;
+}
+
+void follow_with_weights(const NormalProblem& problem, NormalField& field) {
+  Buffers buffers;
+  oneapi::tbb::parallel_for(std::size_t{0}, field.normal.size(), [&](std::size_t i) {
+    std::vector<DirectedSample>& samples = buffers.local();
+    problem.lumitexels.samples_of(i, samples);
+    field.weights[i].weight =
+        best_weights(problem.material_of(i), field.weights[i].weight, field.normal[i], samples, problem.lumitexels.channels());
+  });
+}
 
 std::vector<float> normal_sigmas(const NormalProblem& problem, const NormalField& field, const NormalPrior& prior) {
   const Loops loops(problem);
@@ -268,11 +283,14 @@ double normal_objective(const NormalProblem& problem, const NormalField& field, 
   });
 }
 
-NormalField smooth_normals(const NormalProblem& problem, NormalField field, const SmoothNormalOptions& options) {
+NormalField smooth_normals(const NormalProblem& problem, NormalField field, const SmoothNormalOptions& options,
+                           const std::function<void(int)>& after_step) {
   const Loops loops(problem);
   for (int step = 0; step < options.steps; ++step) {
     const LinearSystem system = linearise(problem, loops, field, options.prior);
-    take(problem, system, solve(problem, loops, system), options.largest_step_rad, field);
+    take(system, solve(problem, loops, system), options.largest_step_rad, field);
+    follow_with_weights(problem, field);
+    after_step(step + 1);
   }
   return field;
 }

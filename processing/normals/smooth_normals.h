@@ -8,6 +8,8 @@
 // much, they do.
 #pragma once
 
+#include <functional>
+
 #include "processing/normals/normal_problem.h"
 
 namespace lumitexel {
@@ -23,8 +25,14 @@ struct NormalField {
   std::vector<TexelWeights> weights;
 };
 
+// Every normal as the mesh has it, every texel its material's own BRDF: where the search starts.
+NormalField field_on_mesh(const NormalProblem& problem);
+// Best weights for the field's normals.
+void follow_with_weights(const NormalProblem& problem, NormalField& field);
+
 // From `start`; weights follow the normals in every step.
-NormalField smooth_normals(const NormalProblem& problem, NormalField start, const SmoothNormalOptions& options);
+NormalField smooth_normals(const NormalProblem& problem, NormalField start, const SmoothNormalOptions& options,
+                           const std::function<void(int)>& after_step = [](int) {});
 
 // What is minimised.
 double normal_objective(const NormalProblem& problem, const NormalField& field, const NormalPrior& prior);

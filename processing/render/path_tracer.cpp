@@ -53,13 +53,14 @@ PathSample PathTracer::trace(const Eigen::Vector3d& origin, Eigen::Vector3d dire
   for (int bounce = 0; point; ++bounce) {
     const Eigen::Vector2d choices = numbers.next(), for_sky = numbers.next(), for_brdf = numbers.next();
     if (!arrive(*point, -direction, choices.x())) break;
-    add_lamps(*point);
-    if (asks_sky_) add_drawn_sky(*point, for_sky);
+    const bool counts = options_.straight_light || bounce > 0;
+    if (counts) add_lamps(*point);
+    if (counts && asks_sky_) add_drawn_sky(*point, for_sky);
     const bool last = bounce == options_.bounces;
     if (last && !sky_answers_brdf_) break;
     direction = texel_.sample(choices.y(), for_brdf);
     const Sky drawn{direction, texel_.density(direction)};
-    point = follow(*point, drawn, last);
+    point = follow(*point, drawn, last, counts);
   }
   return sample_;
 }
@@ -102,12 +103,12 @@ void PathTracer::add_sky(const Sky& sky, double weight) {
 
 // The next surface in the direction drawn from the BRDF, or nothing; then what the sky sends from there has been added.
 // On the last leg only the sky matters.
-std::optional<TexturedPoint> PathTracer::follow(const TexturedPoint& point, const Sky& drawn, bool last) {
+std::optional<TexturedPoint> PathTracer::follow(const TexturedPoint& point, const Sky& drawn, bool last, bool sky_counts) {
   if (!(drawn.density > 0.0) || !(point.geometric_normal.dot(drawn.direction) > 0.0)) return std::nullopt;
   std::optional<TexturedPoint> next;
   const bool blocked = last ? !surface_.sees_sky(point, drawn.direction)
                             : (next = surface_.trace(surface_.start_above(point), drawn.direction)).has_value();
-  if (!blocked && sky_answers_brdf_) {
+  if (!blocked && sky_counts && sky_answers_brdf_) {
     add_sky(drawn, asks_sky_ ? shared_weight(drawn.density, lighting_.environment->density(drawn.direction)) : 1.0);
   }
   if (!next) return std::nullopt;

@@ -42,6 +42,7 @@ enum class EnvironmentSampling {
 
 struct PathOptions {
   int bounces = 0;                // between the model's surfaces
+  bool straight_light = true;     // false: only light that came to the ray's first point from other surfaces
   bool show_environment = false;  // beside the object; otherwise that is black
   EnvironmentSampling sampling = EnvironmentSampling::Combined;
 };
@@ -69,7 +70,7 @@ class PathTracer {
   void add_lamps(const TexturedPoint& point);
   void add_drawn_sky(const TexturedPoint& point, const Eigen::Vector2d& uniform);
   void add_sky(const Sky& sky, double weight);
-  std::optional<TexturedPoint> follow(const TexturedPoint& point, const Sky& drawn, bool last);
+  std::optional<TexturedPoint> follow(const TexturedPoint& point, const Sky& drawn, bool last, bool sky_counts);
   Sky sky_direction(const Eigen::Vector2d& uniform) const;
 
   const ModelSurface& surface_;

@@ -7,7 +7,7 @@
 #include "processing/brdf/nearest_material.h"
 #include "processing/calibration/calibrated_session.h"
 #include "processing/calibration/calibration_summary.h"
-#include "processing/model/evaluate_model.h"
+#include "processing/evaluation/evaluate_model.h"
 #include "processing/model/model.h"
 #include "processing/report/photograph_exposure.h"
 #include "rig/progress.h"

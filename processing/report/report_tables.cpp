@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "processing/image/exr_file.h"
-#include "processing/model/outliers.h"
+#include "processing/fit/outliers.h"
 #include "processing/report/html.h"
 #include "processing/report/report_sections.h"
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "processing/model/tradeoff.h"
+#include "processing/fit/tradeoff.h"
 
 namespace lumitexel {
 

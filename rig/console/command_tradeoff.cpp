@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "processing/calibration/calibrated_session.h"
-#include "processing/model/tradeoff.h"
+#include "processing/fit/tradeoff.h"
 #include "processing/report/tradeoff_page.h"
 #include "rig/console/command.h"
 #include "rig/console/input_folder.h"

@@ -1,4 +1,4 @@
-#include "processing/model/fit_model.h"
+#include "processing/fit/fit_model.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "processing/model/outliers.h"
+#include "processing/fit/outliers.h"
 
 #include <gtest/gtest.h>
 

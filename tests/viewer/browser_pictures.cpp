@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "rig/whole_file.h"
 #include "tests/unit/temporary_folder.h"
 
 namespace lumitexel {
@@ -78,16 +79,16 @@ std::string percent_encoded(const std::string& text) {
   return out.str();
 }
 
-std::string chromium(const std::filesystem::path& page, const json& wanted, const std::string& options, const std::string& limit_s) {
+// What it wrote. until: a browser that shows a page does not end of itself; with this it ends once that is in its log.
+std::string chromium(const std::filesystem::path& page, const json& wanted, const std::string& options, const std::string& limit_s, const std::string& until = "") {
   const TemporaryFolder folder;
   const std::string out = (folder / "out").string();
   const std::string command = "timeout " + limit_s + " chromium --headless=new --no-sandbox --no-first-run --use-gl=angle --use-angle=swiftshader " +
                               "--enable-unsafe-swiftshader --user-data-dir=" + (folder / "profile").string() + " " + options + " 'file://" +
                               page.string() + "#measure=" + percent_encoded(wanted.dump()) + "' >" + out + " 2>" + out + ".err";
-  [[maybe_unused]] const int status = std::system(command.c_str());
-  std::ostringstream text;
-  text << std::ifstream(out, std::ios::binary).rdbuf() << std::ifstream(out + ".err", std::ios::binary).rdbuf();
-  return text.str();
+  const std::string watched = command + " & browser=$!; while kill -0 $browser 2>/dev/null && ! grep -q '" + until + "' " + out + ".err; do sleep 0.1; done; kill $browser 2>/dev/null; wait $browser 2>/dev/null";
+  [[maybe_unused]] const int status = std::system((until.empty() ? command : watched).c_str());
+  return read_whole_file(out) + read_whole_file(out + ".err");
 }
 
 std::string between(const std::string& text, const std::string& before, const std::string& after) {
@@ -95,6 +96,22 @@ std::string between(const std::string& text, const std::string& before, const st
   if (start == std::string::npos) return "";
   const std::size_t end = text.find(after, start + before.size());
   return end == std::string::npos ? "" : text.substr(start + before.size(), end - start - before.size());
+}
+
+// Of the few letters that the browser writes otherwise.
+std::string unescaped(std::string text) {
+  const std::pair<const char*, const char*> kLetters[] = {{"&lt;", "<"}, {"&gt;", ">"}, {"&nbsp;", "\u00a0"}, {"&amp;", "&"}};
+  for (const auto& [code, letter] : kLetters) {
+    for (std::size_t at = 0; (at = text.find(code, at)) != std::string::npos; at += std::strlen(letter)) text.replace(at, std::strlen(code), letter);
+  }
+  return text;
+}
+
+// What the page wrote; discarded if it wrote nothing.
+json measured_by(const std::filesystem::path& page, const json& wanted) {
+  // The browser's clock stands still while it works, so a slow machine does not end it early.
+  const std::string dumped = chromium(page, wanted, "--virtual-time-budget=20000 --dump-dom", "150");
+  return json::parse(unescaped(between(dumped, "<pre id=\"measured\">", "</pre>")), nullptr, false);
 }
 
 }  // namespace
@@ -105,9 +122,7 @@ std::optional<std::map<FitStage, BrowserPicture>> browser_pictures(const std::fi
                                                                    const std::vector<FitStage>& stages) {
   json wanted = view_json(view);
   for (const FitStage stage : stages) wanted["stages"].push_back(to_string(stage));
-  // The browser's clock stands still while it works, so a slow machine does not end it early.
-  const std::string dumped = chromium(page, wanted, "--virtual-time-budget=20000 --dump-dom", "150");
-  const json measured = json::parse(between(dumped, "<pre id=\"measured\">", "</pre>"), nullptr, false);
+  const json measured = measured_by(page, wanted);
   if (measured.is_discarded()) return std::nullopt;
   std::map<FitStage, BrowserPicture> pictures;
   for (const FitStage stage : stages) {
@@ -117,11 +132,42 @@ std::optional<std::map<FitStage, BrowserPicture>> browser_pictures(const std::fi
   return pictures;
 }
 
+std::optional<std::vector<std::vector<float>>> browser_sky(const std::filesystem::path& page, const View& view, FitStage stage, double turn_rad,
+                                                           const std::vector<int>& passes) {
+  json wanted = view_json(view);
+  wanted["stages"] = {to_string(stage)};
+  wanted["sky_turn_rad"] = turn_rad;
+  wanted["sky_passes"] = passes;
+  const json measured = measured_by(page, wanted);
+  if (measured.is_discarded()) return std::nullopt;
+  std::vector<std::vector<float>> pictures;
+  for (const json& text : measured.at("sky")) pictures.push_back(picture(text, view.camera));
+  return pictures;
+}
+
+std::optional<std::vector<float>> browser_figures(const std::filesystem::path& page, const View& view) {
+  json wanted = view_json(view);
+  wanted["stages"] = json::array();
+  wanted["figures"] = true;
+  const json measured = measured_by(page, wanted);
+  if (measured.is_discarded()) return std::nullopt;
+  return picture(measured.at("figures"), view.camera);
+}
+
+std::optional<json> browser_samples(const std::filesystem::path& page, const View& view, const std::vector<std::array<int, 2>>& texels) {
+  json wanted = view_json(view);
+  wanted["stages"] = json::array();
+  wanted["samples_at"] = texels;
+  const json measured = measured_by(page, wanted);
+  if (measured.is_discarded()) return std::nullopt;
+  return measured.at("samples");
+}
+
 std::optional<double> browser_frame_ms(const std::filesystem::path& page, const View& view, FitStage stage, int frames) {
   json wanted = view_json(view);
   wanted["stages"] = {to_string(stage)};
   wanted["frames"] = frames;
-  const std::string log = chromium(page, wanted, "--enable-logging=stderr", "60");
+  const std::string log = chromium(page, wanted, "--enable-logging=stderr", "200", "frame_ms=");
   const std::string figure = between(log, "frame_ms=", ";");
   return figure.empty() ? std::nullopt : std::optional<double>(std::stod(figure));
 }

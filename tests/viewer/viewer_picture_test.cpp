@@ -2,11 +2,13 @@
 
 #include <fstream>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "processing/model/render_view.h"
+#include "processing/report/viewer/viewer_layers.h"
 #include "processing/report/viewer/viewer_page.h"
-#include "tests/unit/plain_models.h"
 #include "tests/unit/temporary_folder.h"
+#include "tests/viewer/bumpy_model.h"
 #include "tests/viewer/viewer_likeness.h"
 
 namespace lumitexel {
@@ -14,57 +16,7 @@ namespace {
 
 constexpr double kLeastPsnr_db = 45.0;  // what the viewer promises
 
-Brdf lobed_brdf(BrdfFamily family, double red, double green, double blue, double strength, double shape) {
-  Brdf brdf = diffuse_brdf(red, green, blue);
-  brdf.family = family;
-  Lobe lobe;
-  lobe.log_strength = std::log(strength);
-  lobe.log_shape = std::log(shape);
-  brdf.lobes.push_back({lobe, lobe, lobe});
-  return brdf;
-}
-
-// A sphere pressed in and drawn out, so that parts of it shade others.
-Mesh bumpy_mesh() {
-  Mesh mesh = sphere_mesh(120, 60);
-  for (Eigen::Vector3d& p : mesh.positions) p *= 1.0 + 0.3 * std::sin(5.0 * p.x()) * std::sin(4.0 * p.y() + 1.0) * std::cos(3.0 * p.z());
-  return mesh;
-}
-
-// All families, sharp lobes, two materials, weights and normals that change from texel to texel, holes in the atlas.
-Model bumpy_model() {
-  Model model = model_of(bumpy_mesh(), 256, 128, lobed_brdf(BrdfFamily::Ggx, 0.05, 0.1, 0.08, 0.3, 0.2));
-  const Brdf sharp = lobed_brdf(BrdfFamily::Lafortune, 0.1, 0.05, 0.02, 20.0, 3000.0), soft = lobed_brdf(BrdfFamily::Lafortune, 0.02, 0.05, 0.1, 0.3, 8.0);
-  const Brdf ward = lobed_brdf(BrdfFamily::Ward, 0.0, 0.1, 0.0, 0.2, 0.15);
-  Brdf retro = soft;
-  retro.lobes[0][0].aim = -0.5;
-  retro.lobes[0][1].log_strength = -std::numeric_limits<double>::infinity();
-  retro.lobes[0][2].aim = 1.2;
-  model.materials = {{soft, {sharp, soft, retro, diffuse_brdf(0.1, 0.1, 0.1), ward}, {sharp, soft}},
-                     {ward, {ward, model.single, retro, soft, sharp}, {retro, ward}}};
-  model.weights = Image(256, 128, 5);
-  model.projection_weights = Image(256, 128, 2);
-  for (int y = 0; y < 128; ++y) {
-    for (int x = 0; x < 256; ++x) {
-      auto& material = model.material[static_cast<std::size_t>(y) * 256 + static_cast<std::size_t>(x)];
-      material = static_cast<std::int16_t>((x / 32 + y / 32) % 2);
-      if (x % 64 < 3 && y % 32 < 5) material = Model::kNoMaterial;
-      for (int k = 0; k < 5; ++k) model.weights.at(x, y, k) = static_cast<float>(std::max(0.0, std::sin(0.05 * x * (k + 1) + 0.1 * y + k)));
-      for (int k = 0; k < 2; ++k) model.projection_weights.at(x, y, k) = static_cast<float>(0.5 + 0.5 * std::cos(0.1 * x + k));
-      const double longitude = 2.0 * std::numbers::pi * (x + 0.5) / 256, latitude = std::numbers::pi * (0.5 - (y + 0.5) / 128);
-      const Eigen::Vector3d tilted = Eigen::Vector3d(std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude), std::sin(latitude)) +
-                                     0.1 * Eigen::Vector3d(std::sin(0.3 * x), std::cos(0.2 * y), std::sin(0.1 * x + 0.2 * y));
-      for (int c = 0; c < 3; ++c) model.normal.at(x, y, c) = y % 50 < 10 ? 0.0f : static_cast<float>(tilted.normalized()[c]);
-    }
-  }
-  // Not about the origin: what the page draws about the mesh's centre has to be moved there.
-  for (Eigen::Vector3d& p : model.mesh.positions) p += Eigen::Vector3d(3.0, -2.0, 5.0);
-  return model;
-}
-
-TEST(ViewerPicture, IsTheRayTracersAtEveryStage) {
-  if (!has_chromium()) GTEST_SKIP() << "NOT TESTED: no chromium here to draw the viewer's page with";
-  const Model model = bumpy_model();
+void expect_the_ray_tracers(const Model& model) {
   const TemporaryFolder folder;
   std::ofstream(folder / "page.html", std::ios::binary) << viewer_page("bumpy", model).html;
   View view = framing_view(model.mesh, model.channels, 300, {0.5, -1.0, 0.4}, Eigen::Vector3d::UnitZ());
@@ -84,6 +36,25 @@ TEST(ViewerPicture, IsTheRayTracersAtEveryStage) {
     EXPECT_GT(found.same_texel, 0.97 * found.object_pixels);  // the rest: holes of the atlas, and texels' borders
     EXPECT_GT(found.psnr_db, kLeastPsnr_db) << to_string(stage);
   }
+}
+
+TEST(ViewerPicture, IsTheRayTracersAtEveryStage) {
+  if (!has_chromium()) GTEST_SKIP() << "NOT TESTED: no chromium here to draw the viewer's page with";
+  expect_the_ray_tracers(bumpy_model());
+}
+
+TEST(ViewerPicture, IsTheRayTracersAtEveryStageWhereNormalsWereFitted) {
+  if (!has_chromium()) GTEST_SKIP() << "NOT TESTED: no chromium here to draw the viewer's page with";
+  expect_the_ray_tracers(layered_model());
+}
+
+TEST(ViewerStages, AreThoseThatTheModelHolds) {
+  const nlohmann::json plain = stages_json(bumpy_model()), layered = stages_json(layered_model());
+  ASSERT_EQ(plain.size(), std::size(kFitStages));
+  for (std::size_t i = 0; i < std::size(kFitStages); ++i) EXPECT_EQ(plain[i]["name"], to_string(kFitStages[i]));
+  EXPECT_EQ(plain[4], (nlohmann::json{{"name", "normal"}, {"held", false}, {"layer", 0}, {"functions", "basis"}, {"texel_normals", true}}));
+  EXPECT_EQ(layered[2], (nlohmann::json{{"name", "projection"}, {"held", true}, {"layer", 1}, {"functions", "projection"}, {"texel_normals", false}}));
+  EXPECT_EQ(layered[4], (nlohmann::json{{"name", "normal"}, {"held", true}, {"layer", 0}, {"functions", "basis"}, {"texel_normals", true}}));
 }
 
 }  // namespace

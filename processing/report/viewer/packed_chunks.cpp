@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstring>
 #include <half.h>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "drivers/error.h"
@@ -84,6 +85,16 @@ std::map<std::string, std::size_t> PackedChunks::bytes() const {
   std::map<std::string, std::size_t> sizes;
   for (const Chunk& chunk : chunks_) sizes[chunk.name] = chunk.base64.size();
   return sizes;
+}
+
+std::size_t PackedChunks::total_bytes() const {
+  std::size_t sum = 0;
+  for (const Chunk& chunk : chunks_) sum += chunk.base64.size();
+  return sum;
+}
+
+void PackedChunks::append(PackedChunks&& others) {
+  chunks_.insert(chunks_.end(), std::make_move_iterator(others.chunks_.begin()), std::make_move_iterator(others.chunks_.end()));
 }
 
 std::uint16_t half_bits(float value) { return half(std::clamp(value, -static_cast<float>(HALF_MAX), static_cast<float>(HALF_MAX))).bits(); }

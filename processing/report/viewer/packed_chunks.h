@@ -24,6 +24,8 @@ class PackedChunks {
   std::string markup() const;                          // the script elements
   std::string directory_json() const;                  // {"name": {"type": "u8" | "u16" | "f32", "count", "differences"}}
   std::map<std::string, std::size_t> bytes() const;    // in the page, by name
+  std::size_t total_bytes() const;
+  void append(PackedChunks&& others);
 
  private:
   struct Chunk {

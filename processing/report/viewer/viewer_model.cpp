@@ -2,10 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 
-#include "processing/report/material_pictures.h"
+#include "processing/report/viewer/viewer_layers.h"
 
 namespace lumitexel {
 namespace {
@@ -13,46 +12,8 @@ namespace {
 using nlohmann::json;
 
 constexpr double kOctahedralSteps = 65534.0;
-constexpr std::uint16_t kNoMaterialCode = 65535;
-
-struct Box {
-  Eigen::Vector3d low, high;
-};
-
-Box box_of(const Mesh& mesh) {
-  Box box{mesh.positions.front(), mesh.positions.front()};
-  for (const Eigen::Vector3d& position : mesh.positions) {
-    box.low = box.low.cwiseMin(position);
-    box.high = box.high.cwiseMax(position);
-  }
-  return box;
-}
 
 json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
-json lobe_json(const Lobe& lobe) {
-  const bool off = !std::isfinite(lobe.log_strength);
-  return {{"log_strength", off ? json() : json(lobe.log_strength)}, {"log_shape", lobe.log_shape}, {"aim", lobe.aim}};
-}
-
-json brdf_json(const Brdf& brdf) {
-  const auto channels = static_cast<std::size_t>(brdf.channels);
-  json lobes = json::array();
-  for (const auto& lobe : brdf.lobes) {
-    json by_channel = json::array();
-    for (std::size_t c = 0; c < channels; ++c) by_channel.push_back(lobe_json(lobe[c]));
-    lobes.push_back(by_channel);
-  }
-  json diffuse = json::array();
-  for (std::size_t c = 0; c < channels; ++c) diffuse.push_back(brdf.diffuse[c]);
-  return {{"family", to_string(brdf.family)}, {"diffuse", diffuse}, {"lobes", lobes}};
-}
-
-json basis_json(const std::vector<Brdf>& basis) {
-  json list = json::array();
-  for (const Brdf& brdf : basis) list.push_back(brdf_json(brdf));
-  return list;
-}
 
 std::vector<float> flattened(const std::vector<Eigen::Vector3d>& vectors, const Eigen::Vector3d& origin) {
   std::vector<float> values;
@@ -64,8 +25,7 @@ std::vector<float> flattened(const std::vector<Eigen::Vector3d>& vectors, const 
 }
 
 void add_mesh(const Mesh& mesh, PackedChunks& chunks) {
-  const Box box = box_of(mesh);
-  chunks.add("positions", flattened(mesh.positions, 0.5 * (box.low + box.high)));
+  chunks.add("positions", flattened(mesh.positions, box_of(mesh).centre()));
   chunks.add("normals", flattened(mesh.normals, Eigen::Vector3d::Zero()));
   std::vector<float> texcoords;
   for (const Eigen::Vector2d& texcoord : mesh.texcoords) {
@@ -85,16 +45,6 @@ void add_mesh(const Mesh& mesh, PackedChunks& chunks) {
   chunks.add("triangles_high", high, ChunkCoding::Differences);
 }
 
-std::vector<std::uint16_t> halves_of(const Image& map, const std::vector<std::uint32_t>& texels) {
-  std::vector<std::uint16_t> halves;
-  const auto channels = static_cast<std::size_t>(map.channels);
-  halves.reserve(texels.size() * channels);
-  for (std::size_t k = 0; k < channels; ++k) {
-    for (const std::uint32_t texel : texels) halves.push_back(half_bits(map.data[texel * channels + k]));
-  }
-  return halves;
-}
-
 void add_normals(const Model& model, const std::vector<std::uint32_t>& texels, PackedChunks& chunks) {
   std::vector<std::uint16_t> codes(texels.size() * 2);
   for (std::size_t i = 0; i < texels.size(); ++i) {
@@ -110,6 +60,15 @@ double sign_of(double value) { return value < 0.0 ? -1.0 : 1.0; }
 
 }  // namespace
 
+MeshBox box_of(const Mesh& mesh) {
+  MeshBox box{mesh.positions.front(), mesh.positions.front()};
+  for (const Eigen::Vector3d& position : mesh.positions) {
+    box.low = box.low.cwiseMin(position);
+    box.high = box.high.cwiseMax(position);
+  }
+  return box;
+}
+
 std::vector<std::uint32_t> textured_texels(const Model& model) {
   std::vector<std::uint32_t> texels;
   for (std::size_t i = 0; i < model.material.size(); ++i) {
@@ -118,37 +77,39 @@ std::vector<std::uint32_t> textured_texels(const Model& model) {
   return texels;
 }
 
-json viewer_model_json(const Model& model) {
-  const Box box = box_of(model.mesh);
-  json materials = json::array();
-  for (std::size_t m = 0; m < model.materials.size(); ++m) {
-    const ModelMaterial& material = model.materials[m];
-    materials.push_back({{"brdf", brdf_json(material.brdf)},
-                         {"basis", basis_json(material.basis)},
-                         {"projection_basis", basis_json(material.projection_basis)},
-                         {"colour", material_colour(static_cast<int>(m))}});
+std::vector<std::uint16_t> halves_of(const Image& map, const std::vector<std::uint32_t>& texels) {
+  std::vector<std::uint16_t> halves;
+  const auto channels = static_cast<std::size_t>(map.channels);
+  halves.reserve(texels.size() * channels);
+  for (std::size_t k = 0; k < channels; ++k) {
+    for (const std::uint32_t texel : texels) halves.push_back(half_bits(map.data[texel * channels + k]));
   }
+  return halves;
+}
+
+json viewer_model_json(const Model& model) {
+  const MeshBox box = box_of(model.mesh);
   return {{"channels", model.channels},
           {"atlas", {{"width", model.width}, {"height", model.height}}},
-          {"centre", vector_json(0.5 * (box.low + box.high))},
+          {"centre", vector_json(box.centre())},
+          {"box", {{"low", vector_json(box.low - box.centre())}, {"size", vector_json(box.high - box.low)}}},
           {"diagonal_m", (box.high - box.low).norm()},
-          {"basis_size", model.weights.channels},
-          {"principal_functions", has_principal_functions(model)},
           {"single", brdf_json(model.single)},
-          {"materials", materials}};
+          {"layers", layers_json(model)},
+          {"stages", stages_json(model)}};
 }
 
 void add_model_chunks(const Model& model, PackedChunks& chunks) {
   const std::vector<std::uint32_t> texels = textured_texels(model);
   add_mesh(model.mesh, chunks);
-  std::vector<std::uint16_t> material(model.material.size(), kNoMaterialCode);
-  for (const std::uint32_t texel : texels) material[texel] = static_cast<std::uint16_t>(model.material[texel]);
-  chunks.add("material", material);
+  std::vector<std::uint8_t> textured(model.material.size(), 0);
+  for (const std::uint32_t texel : texels) textured[texel] = 1;
+  chunks.add("textured", textured);
+  add_layer_chunks(model, texels, chunks);
   add_normals(model, texels, chunks);
-  chunks.add("weights", halves_of(model.weights, texels));
-  if (has_principal_functions(model)) chunks.add("projection_weights", halves_of(model.projection_weights, texels));
   chunks.add("sigma", halves_of(model.uncertainty, texels));
   chunks.add("samples", halves_of(model.samples, texels));
+  if (has_normals(model)) chunks.add("normal_sigma", halves_of(model.normal_sigma, texels));
 }
 
 std::array<std::uint16_t, 2> octahedral(const Eigen::Vector3d& unit) {

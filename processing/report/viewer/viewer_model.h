@@ -14,13 +14,24 @@
 
 namespace lumitexel {
 
+// Of its vertices, m; the page's numbers are about its centre.
+struct MeshBox {
+  Eigen::Vector3d low, high;
+  Eigen::Vector3d centre() const { return 0.5 * (low + high); }
+};
+MeshBox box_of(const Mesh& mesh);
+
 // Atlas indices y * width + x of the texels with a material.
 std::vector<std::uint32_t> textured_texels(const Model& model);
 
-// "channels", "atlas", "centre" (m, of the mesh's box), "diagonal_m", "single", "materials", "basis_size", "principal_functions".
+// "channels", "atlas", "centre" (m, of the mesh's box), "box" ("low" about the centre, "size"), "diagonal_m", "single", and viewer_layers.h's "layers" and "stages".
 nlohmann::json viewer_model_json(const Model& model);
-// "positions", "normals", "texcoords", "triangles", "material", "texel_normals", "weights", "projection_weights", "sigma", "samples".
+// "positions", "normals", "texcoords", "triangles_low" and "_high" (of 32 bits), "textured" (by the atlas: 1 in textured_texels), those
+// of viewer_layers.h, "texel_normals", "sigma", "samples", and where normals were fitted "normal_sigma".
 void add_model_chunks(const Model& model, PackedChunks& chunks);
+
+// A map's values at the texels as half floats, a plane a channel.
+std::vector<std::uint16_t> halves_of(const Image& map, const std::vector<std::uint32_t>& texels);
 
 // A unit vector's two octahedral coordinates, 0 … 65534; kNoOctahedral twice for a zero vector.
 inline constexpr std::uint16_t kNoOctahedral = 65535;

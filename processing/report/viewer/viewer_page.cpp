@@ -8,14 +8,16 @@
 #include "processing/report/viewer/packed_chunks.h"
 #include "processing/report/viewer/page_files.h"
 #include "processing/report/viewer/viewer_model.h"
+#include "processing/report/viewer/viewer_samples.h"
+#include "processing/report/viewer/viewer_sky.h"
 
 namespace lumitexel {
 namespace {
 
 // In the order in which they are run: each may use what those before it defined.
-constexpr const char* kScripts[] = {"data.js",     "bvh.js", "textures.js", "renderer.js",
-                                    "texel_table.js", "ui.js",  "main.js"};
-constexpr const char* kShaders[] = {"brdf.glsl", "surface.glsl", "shade.glsl"};
+constexpr const char* kScripts[] = {"data.js",     "bvh.js", "textures.js", "sky.js", "renderer.js",
+                                    "texel_table.js", "samples.js", "sample_table.js", "ui.js",  "main.js"};
+constexpr const char* kShaders[] = {"brdf.glsl", "surface.glsl", "shade.glsl", "sky.glsl", "pixel.glsl"};
 
 std::string page_file(const std::string& name) {
   for (const PageFile* file = kPageFiles; file->name != nullptr; ++file) {
@@ -51,13 +53,22 @@ std::string inline_json(const std::string& json) {
 
 }  // namespace
 
-ViewerPage viewer_page(const std::string& title, const Model& model) {
+ViewerPage viewer_page(const std::string& title, const Model& model, const ViewerSamples* samples, const Image* given_sky) {
   PackedChunks chunks;
   add_model_chunks(model, chunks);
   nlohmann::json document = viewer_model_json(model);
+  const Image sky = given_sky != nullptr ? *given_sky : built_in_sky();
+  add_sky_chunk(sky, chunks);
+  document["sky"] = viewer_sky_json(sky);
+  std::size_t every = 0;
+  if (samples != nullptr) {
+    add_residual_chunk(samples->records, model, chunks);
+    every = add_samples_within(kMostSampleBytes, samples->records, model.mesh, chunks);
+    document["samples"] = viewer_samples_json(samples->records, samples->session, box_of(model.mesh).centre(), every);
+  }
   document["chunks"] = nlohmann::json::parse(chunks.directory_json());
 
-  ViewerPage page{page_file("page.html"), chunks.bytes(), textured_texels(model).size()};
+  ViewerPage page{page_file("page.html"), chunks.bytes(), textured_texels(model).size(), every};
   page.bytes["three"] = page_file("three.min.js").size();
   replace(page.html, "title", html::escaped(title));
   replace(page.html, "title", html::escaped(title));

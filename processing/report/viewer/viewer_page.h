@@ -9,6 +9,7 @@
 #include <string>
 
 #include "processing/model/model.h"
+#include "processing/report/viewer/lumitexel_records.h"
 
 namespace lumitexel {
 
@@ -16,8 +17,16 @@ struct ViewerPage {
   std::string html;
   std::map<std::string, std::size_t> bytes;  // of the page, by what they hold
   std::size_t textured_texels = 0;
+  std::size_t every = 0;                     // k where every k-th lumitexel is in it with its samples; 0: none
 };
 
-ViewerPage viewer_page(const std::string& title, const Model& model);
+// What the photographs say, for the page to show beside the model.
+struct ViewerSamples {
+  const CalibratedSession& session;
+  const LumitexelRecords& records;  // of the model and the session
+};
+
+// samples: null for a page of the model alone. sky: of viewer_sky.h, at most kMostSkyWidth wide; null for the built-in one.
+ViewerPage viewer_page(const std::string& title, const Model& model, const ViewerSamples* samples = nullptr, const Image* sky = nullptr);
 
 }  // namespace lumitexel

@@ -1,7 +1,7 @@
 // Measurements made up for tests: error by view, seconds.
 #pragma once
 
-#include "processing/model/tradeoff.h"
+#include "processing/fit/tradeoff.h"
 
 namespace lumitexel {
 

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "processing/model/stage_timer.h"
+#include "processing/fit/stage_timer.h"
 
 namespace lumitexel {
 namespace {

@@ -1,4 +1,4 @@
-#include "processing/model/thinned_session.h"
+#include "processing/fit/thinned_session.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "processing/model/tradeoff.h"
+#include "processing/fit/tradeoff.h"
 
 #include <gmock/gmock.h>
 

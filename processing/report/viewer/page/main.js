@@ -32,6 +32,16 @@ function measure(renderer, wanted) {
     renderer.setStage(stage);
     result.radiance[stage] = base64Of(renderer.read("linear"));
   }
+  if (wanted.samples_at) result.samples = wanted.samples_at.map(([x, y]) => renderer.lumitexels.at(x, y, (texel) => renderer.normalOf(texel)));
+  if (wanted.sky_passes) {
+    u.skyTurn.value = wanted.sky_turn_rad;
+    renderer.passes = 0;
+    result.sky = wanted.sky_passes.map((passes) => {
+      while (renderer.passes < passes) renderer.addPass();
+      return base64Of(renderer.readMean());
+    });
+  }
+  if (wanted.figures) result.figures = base64Of(renderer.read("figures"));
   result.texel = base64Of(renderer.read("texel"));
   if (wanted.frames) console.log("frame_ms=" + frameTime(renderer, camera, wanted.frames) + ";");
   const place = document.createElement("pre");

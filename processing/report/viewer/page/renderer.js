@@ -1,5 +1,19 @@
 // Draws the model: first the number of the nearest triangle of every pixel (rasterised), then every pixel's value (shade.glsl).
-const kShow = { radiance: 0, normals: 1, clusters: 2, sigma: 3, samples: 4, residual: 5, texel: 6, linear: 7 };
+const kShow = { radiance: 0, normals: 1, clusters: 2, sigma: 3, samples: 4, residual: 5, normal_sigma: 6, texel: 7, linear: 8, figures: 9, sky: 10 };
+
+// How radiance becomes a colour.
+const kToneShader = `const vec3 kBackground = vec3(0.0052, 0.006, 0.0071);
+  vec3 srgb(vec3 linear) {
+    vec3 x = clamp(linear, 0.0, 1.0);
+    return mix(12.92 * x, 1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, greaterThan(x, vec3(0.0031308)));
+  }`;
+
+// Of van der Corput: 1, 2, 3, … evenly into (0, 1).
+function radicalInverse(index, base) {
+  let sum = 0;
+  for (let digit = 1 / base; index > 0; index = Math.floor(index / base), digit /= base) sum += digit * (index % base);
+  return sum;
+}
 
 class Renderer {
   constructor(canvas, data) {
@@ -13,8 +27,13 @@ class Renderer {
     this.mesh = meshTextures(data);
     this.basis = basisTexture();
     this.atlas = atlasTextures(data);
+    this.sky = new Sky(data.sky);
+    this.sums = [this.target(THREE.FloatType), this.target(THREE.FloatType)];
+    this.passes = 0;
+    this.lumitexels = page.samples ? new Lumitexels(data) : null;
     this.triangles = this.triangleScene();
     this.screen = this.screenScene();
+    this.mean = this.meanScene();
     this.setSize(1, 1);
   }
 
@@ -48,25 +67,42 @@ class Renderer {
     geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
     const { triangleMap, nodeMap, nodeCount } = this.mesh, { basisMap, colourColumn } = this.basis, { normalMap, figureMap } = this.atlas.textures;
     const values = {
-      triangleMap, nodeMap, nodeCount, basisMap, colourColumn, normalMap, figureMap, weightMap: null, triangleNumberMap: this.numbers.texture,
-      surfaceOffset: 1e-5 * page.diagonal_m, atlasSize: new THREE.Vector2(page.atlas.width, page.atlas.height), clusterRow: 1,
+      triangleMap, nodeMap, nodeCount, basisMap, colourColumn, normalMap, figureMap, weightMap: null, materialMap: null, triangleNumberMap: this.numbers.texture,
+      surfaceOffset: 1e-5 * page.diagonal_m, atlasSize: new THREE.Vector2(page.atlas.width, page.atlas.height), clusterRow: 0,
       firstRow: 0, rowsPerMaterial: 0, rowCount: 0, weighted: false, texelNormals: true, shadows: true, exposure: 1, figureScale: 1, show: 0,
+      skyMap: this.sky.skyMap, aliasMap: this.sky.aliasMap, skySize: [page.sky.width, page.sky.height], skyTurn: 0, sumMap: null, pass: 0, jitter: new THREE.Vector2(),
       eye: new THREE.Vector3(), rightward: new THREE.Vector3(), upward: new THREE.Vector3(), forward: new THREE.Vector3(),
       pictureSize: new THREE.Vector2(), focal: 1, light: new THREE.Vector3(), intensity: new THREE.Vector3(),
     };
     this.uniforms = {};
     for (const [name, value] of Object.entries(values)) this.uniforms[name] = { value };
     const vertexShader = "void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }";
-    const fragmentShader = "precision highp sampler2DArray;\n" + shaders["brdf.glsl"] + shaders["surface.glsl"] + shaders["shade.glsl"];
+    const fragmentShader = "precision highp sampler2DArray;\n" + kToneShader + shaders["brdf.glsl"] + shaders["surface.glsl"] + shaders["shade.glsl"] + shaders["sky.glsl"] + shaders["pixel.glsl"];
     const material = new THREE.ShaderMaterial({ vertexShader, fragmentShader, uniforms: this.uniforms, depthTest: false, depthWrite: false, blending: THREE.NoBlending });
     return this.scene(geometry, material);
+  }
+
+  // The mean of the passes so far, as drawn on the screen.
+  meanScene() {
+    const geometry = this.screen.children[0].geometry;
+    this.meanUniforms = { sumMap: { value: null }, passes: { value: 1 }, exposure: { value: 1 } };
+    const vertexShader = "void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }";
+    const fragmentShader = `uniform highp sampler2D sumMap;
+      uniform float passes, exposure;
+      ${kToneShader}
+      void main() {
+        vec4 mean = texelFetch(sumMap, ivec2(gl_FragCoord.xy), 0) / passes;
+        gl_FragColor = vec4(srgb(exposure * mean.rgb + (1.0 - mean.a) * kBackground), 1.0);
+      }`;
+    return this.scene(geometry, new THREE.ShaderMaterial({ vertexShader, fragmentShader, uniforms: this.meanUniforms, depthTest: false, depthWrite: false, blending: THREE.NoBlending }));
   }
 
   setSize(width, height) {
     this.width = width;
     this.height = height;
     this.gl.setSize(width, height, false);
-    this.numbers.setSize(width, height);
+    for (const target of [this.numbers, ...this.sums]) target.setSize(width, height);
+    this.passes = 0;
     this.uniforms.pictureSize.value.set(width, height);
   }
 
@@ -88,11 +124,20 @@ class Renderer {
     this.camera.updateMatrixWorld();
   }
 
+  // A stage of page.stages; its own normals with it.
   setStage(name) {
-    const { weights, ...rows } = this.basis.stages[name];
-    for (const [key, value] of Object.entries(rows)) this.uniforms[key].value = value;
-    this.uniforms.weighted.value = weights !== null;
-    this.uniforms.weightMap.value = this.atlas.textures[weights || "weights"];
+    const { weights, materials, ...values } = this.basis.stages[name], u = this.uniforms;
+    for (const [key, value] of Object.entries(values)) u[key].value = value;
+    u.weighted.value = weights !== null;
+    u.weightMap.value = this.atlas.textures[weights || "weights_0"];
+    u.materialMap.value = this.atlas.textures[materials];
+  }
+
+  // Of the texel; null where the mesh's serve.
+  normalOf([x, y]) {
+    const i = this.atlas.indexOf[y * page.atlas.width + x], normal = [0, 0, 0], codes = this.data.texel_normals;
+    if (i >= 0) fromOctahedral(codes[i], codes[this.data.sigma.length + i], normal, 0);
+    return normal.every((value) => value === 0) ? null : normal;
   }
 
   draw(show, target = null) {
@@ -106,13 +151,44 @@ class Renderer {
     this.gl.setRenderTarget(null);
   }
 
+  // One more sample of the sky's light in every pixel. Whoever changes what is seen sets `passes` to 0 first.
+  addPass() {
+    const u = this.uniforms, [before, after] = this.sums;
+    u.pass.value = this.passes;
+    u.sumMap.value = before.texture;
+    u.jitter.value.set(radicalInverse(this.passes + 1, 2) - 0.5, radicalInverse(this.passes + 1, 3) - 0.5);
+    // What three.js calls an offset moves the picture's window to the right and down.
+    this.camera.setViewOffset(this.width, this.height, u.jitter.value.x, -u.jitter.value.y, this.width, this.height);
+    this.draw("sky", after);
+    this.camera.clearViewOffset();
+    u.jitter.value.set(0, 0);
+    this.sums = [after, before];
+    ++this.passes;
+  }
+
+  drawMean(exposure) {
+    this.meanUniforms.sumMap.value = this.sums[0].texture;
+    this.meanUniforms.passes.value = this.passes;
+    this.meanUniforms.exposure.value = exposure;
+    this.gl.setRenderTarget(null);
+    this.gl.render(this.mean, this.camera);
+  }
+
+  // Four floats a pixel, bottom row first: the mean radiance and the share of the passes that met the object.
+  readMean() {
+    const values = new Float32Array(4 * this.width * this.height);
+    this.gl.readRenderTargetPixels(this.sums[0], 0, 0, this.width, this.height, values);
+    return values.map((value) => value / this.passes);
+  }
+
   // Waits until all is drawn: reading a pixel is the only thing that no driver answers early.
   finish() {
     const gl = this.gl.getContext();
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
-  // Four floats a pixel, bottom row first; "texel": x, y, material, triangle; "linear": radiance and 1, or 0 beside the object.
+  // Four floats a pixel, bottom row first; "texel": x, y, material, triangle; "linear": radiance and 1, or 0 beside the object;
+  // "figures": sigma, samples, residual, sigma of the normal, -1 for none.
   read(show, x = 0, y = 0, width = this.width, height = this.height) {
     const target = this.target(THREE.FloatType), values = new Float32Array(4 * width * height);
     target.setSize(this.width, this.height);

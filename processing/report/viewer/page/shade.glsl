@@ -1,7 +1,8 @@
 // One pixel, as ViewRenderer (processing/model/render_view.cpp) computes it: f cos at each of the four texels around the point with
 // that texel's own normal, blended bilinearly over those that have a material.
-uniform highp sampler2D normalMap;   // xyz: unit, in world, zero: the vertex normal; w: material, -1: none
-uniform highp sampler2D figureMap;   // sigma, samples, residual
+uniform highp sampler2D normalMap;   // xyz: unit, in world, zero: the vertex normal; w: 0, or -1 in a hole of the atlas
+uniform highp sampler2D materialMap; // of the stage's layer: two bytes, one more than the material's number
+uniform highp sampler2D figureMap;   // sigma, samples, residual, sigma of the normal; below 0: none
 uniform highp sampler2DArray weightMap;
 uniform vec2 atlasSize;
 uniform int firstRow, rowsPerMaterial, rowCount;  // of basisMap: of the stage's first material; further ones; how many are mixed
@@ -10,7 +11,7 @@ uniform vec3 light, intensity;  // m, W/sr
 uniform float exposure, figureScale;
 uniform int show, clusterRow, colourColumn;
 
-const int kRadiance = 0, kNormals = 1, kClusters = 2, kSigma = 3, kSamples = 4, kResidual = 5, kTexel = 6, kLinear = 7;
+const int kRadiance = 0, kNormals = 1, kClusters = 2, kSigma = 3, kSamples = 4, kResidual = 5, kNormalSigma = 6, kTexel = 7, kLinear = 8, kFigures = 9, kSky = 10;
 
 struct Texels { ivec2 at[4]; float weight[4]; vec4 normal[4]; };
 
@@ -36,7 +37,15 @@ vec3 normalAt(Texels t, int k, Point p) {
   return texelNormals && dot(normal, normal) > 0.0 ? normalize(normal) : p.vertexNormal;
 }
 
-vec3 reflectance(ivec2 at, int material, Geometry g) {
+// -1: none.
+int materialAt(ivec2 at) {
+  vec2 code = floor(texelFetch(materialMap, at, 0).rg * 255.0 + 0.5);
+  return int(code.r) + 256 * int(code.g) - 1;
+}
+
+vec3 reflectance(ivec2 at, Geometry g) {
+  int material = materialAt(at);
+  if (material < 0) return vec3(0.0);
   int row = firstRow + rowsPerMaterial * material;
   if (!weighted) return evaluateBrdf(row, g);
   vec3 sum = vec3(0.0);
@@ -60,7 +69,7 @@ vec3 radiance(Point p, Texels t) {
     if (g.cosI <= 0.0 || g.cosO <= 0.0) continue;
     if (!askedForShadow && !seesLight(p, light)) return vec3(0.0);
     askedForShadow = true;
-    sum += t.weight[k] * g.cosI * reflectance(t.at[k], int(t.normal[k].w), g);
+    sum += t.weight[k] * g.cosI * reflectance(t.at[k], g);
   }
   return sum * intensity / distance2;
 }
@@ -73,15 +82,24 @@ int nearest(Texels t) {
   return best;
 }
 
-vec3 srgb(vec3 linear) {
-  vec3 x = clamp(linear, 0.0, 1.0);
-  return mix(12.92 * x, 1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, greaterThan(x, vec3(0.0031308)));
-}
-
 // Dark blue over green to yellow; viewer.js draws its legend from the same numbers.
 vec3 heat(float x) {
   x = clamp(x, 0.0, 1.0);
   return x < 0.5 ? mix(vec3(0.23, 0.12, 0.38), vec3(0.13, 0.57, 0.55), 2.0 * x) : mix(vec3(0.13, 0.57, 0.55), vec3(0.99, 0.91, 0.14), 2.0 * x - 1.0);
+}
+
+// Blended over the texels that have the figure, but the number of samples, which is the nearest texel's; -1 where none has it.
+vec4 figuresAt(Texels t) {
+  vec4 sum = vec4(0.0), total = vec4(0.0), nearestOne = vec4(-1.0);
+  for (int k = 0; k < 4; ++k) {
+    if (t.weight[k] == 0.0) continue;
+    vec4 own = texelFetch(figureMap, t.at[k], 0), weight = t.weight[k] * step(0.0, own);
+    sum += weight * own;
+    total += weight;
+    if (k == nearest(t)) nearestOne = own;
+  }
+  vec4 blended = mix(vec4(-1.0), sum / max(total, 1e-6), greaterThan(total, vec4(0.0)));
+  return vec4(blended.x, nearestOne.y, blended.zw);
 }
 
 vec4 pixel(Point p, Texels t) {
@@ -89,27 +107,16 @@ vec4 pixel(Point p, Texels t) {
   if (show == kRadiance) return vec4(srgb(exposure * radiance(p, t)), 1.0);
   int best = nearest(t);
   bool hole = t.weight[best] == 0.0;
-  if (show == kTexel) return hole ? vec4(-1.0, -1.0, -1.0, float(p.triangle)) : vec4(vec2(t.at[best]), t.normal[best].w, float(p.triangle));
+  int material = hole ? -1 : materialAt(t.at[best]);
+  if (show == kTexel) return vec4(hole ? vec2(-1.0) : vec2(t.at[best]), float(material), float(p.triangle));
   if (show == kNormals) {
     vec3 sum = vec3(0.0);
     for (int k = 0; k < 4; ++k) sum += t.weight[k] * normalAt(t, k, p);
     return vec4(0.5 + 0.5 * normalize(hole ? p.vertexNormal : sum), 1.0);
   }
-  if (hole) return vec4(0.25, 0.0, 0.0, 1.0);
-  if (show == kClusters) return vec4(texelFetch(basisMap, ivec2(colourColumn, clusterRow + int(t.normal[best].w)), 0).rgb, 1.0);
-  vec4 figures = vec4(0.0);
-  for (int k = 0; k < 4; ++k) {
-    if (t.weight[k] > 0.0) figures += t.weight[k] * texelFetch(figureMap, t.at[k], 0);
-  }
-  if (show == kSamples) figures = texelFetch(figureMap, t.at[best], 0);
-  return vec4(heat(figures[show - kSigma] / figureScale), 1.0);
-}
-
-void main() {
-  Point p;
-  if (!pointAt(gl_FragCoord.xy, p)) {
-    gl_FragColor = show == kTexel || show == kLinear ? vec4(-1.0, -1.0, -1.0, 0.0) : vec4(0.063, 0.071, 0.078, 1.0);
-    return;
-  }
-  gl_FragColor = pixel(p, texelsAround(p.texcoord));
+  if (show == kFigures) return figuresAt(t);
+  if (hole || (show == kClusters && material < 0)) return vec4(0.25, 0.0, 0.0, 1.0);
+  if (show == kClusters) return vec4(texelFetch(basisMap, ivec2(colourColumn, clusterRow + material), 0).rgb, 1.0);
+  float figure = figuresAt(t)[show - kSigma];
+  return vec4(figure < 0.0 ? vec3(0.35) : heat(figure / figureScale), 1.0);
 }

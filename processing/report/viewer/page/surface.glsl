@@ -4,7 +4,7 @@ uniform highp sampler2D triangleMap, nodeMap, triangleNumberMap;
 uniform int nodeCount;
 uniform float surfaceOffset;  // m; as RayScene::surface_offset_m
 uniform vec3 eye, rightward, upward, forward;
-uniform vec2 pictureSize;
+uniform vec2 pictureSize, jitter;  // jitter: px, of where in the pixel the ray goes
 uniform float focal;  // px
 
 const int kRow = 2046;
@@ -20,7 +20,7 @@ bool pointAt(vec2 pixel, out Point p) {
   vec3 code = floor(texelFetch(triangleNumberMap, ivec2(pixel), 0).rgb * 255.0 + 0.5);
   p.triangle = int(code.r) + 256 * int(code.g) + 65536 * int(code.b) - 1;
   if (p.triangle < 0) return false;
-  vec2 off = (pixel - 0.5 * pictureSize) / focal;
+  vec2 off = (pixel + jitter - 0.5 * pictureSize) / focal;
   vec3 ray = normalize(forward + off.x * rightward + off.y * upward);
   vec4 a = triangleTexel(p.triangle, 0), b = triangleTexel(p.triangle, 1), c = triangleTexel(p.triangle, 2);
   vec4 na = triangleTexel(p.triangle, 3), nb = triangleTexel(p.triangle, 4), nc = triangleTexel(p.triangle, 5);

@@ -13,23 +13,31 @@ function brdfRows(brdf) {
   return rows;
 }
 
-function weightRows(data, name, i, count) {
-  if (!data[name]) return "";
-  const texels = data.sigma.length, values = [];
-  for (let k = 0; k < count; ++k) values.push(fromHalf(data[name][k * texels + i]));
-  return values.map((value, k) => (value > 0 ? tableRow((name === "weights" ? "weight " : "before PFA ") + k, rounded(value, 4)) : "")).join("");
+function weightRows(planes, text, i, count, texels) {
+  const values = [];
+  for (let k = 0; k < count; ++k) values.push(fromHalf(planes[k * texels + i]));
+  return values.map((value, k) => (value > 0 ? tableRow(text + " " + k, rounded(value, 4)) : "")).join("");
 }
 
-function texelTable(renderer, x, y) {
-  const data = renderer.data, texel = y * page.atlas.width + x, i = renderer.atlas.indexOf[texel], m = data.material[texel], material = page.materials[m];
-  const normal = [0, 0, 0];
-  fromOctahedral(data.texel_normals[i], data.texel_normals[data.sigma.length + i], normal, 0);
-  let rows = tableRow("texel", x + ", " + y) + tableRow("material", `<span class="swatch" style="background:${css(material.colour)}"></span>${m}`);
-  rows += tableRow("normal", normal.map((v) => rounded(v, 4)).join(", "));
+// Of the layer that a stage draws with.
+function materialRows(data, i, { layer }) {
+  const m = data["material_" + layer][i], texels = data.sigma.length;
+  if (m === kNoMaterial) return { rows: tableRow("material", "none at this stage"), brdf: "" };
+  const material = page.layers[layer][m];
+  let rows = tableRow("material", `<span class="swatch" style="background:${css(material.colour)}"></span>${m}`);
+  rows += weightRows(data["projection_weights_" + layer], "before PFA", i, material.projection_basis.length, texels);
+  rows += weightRows(data["weights_" + layer], "weight", i, material.basis.length, texels);
+  return { rows, brdf: `<p class="hint">BRDF of material ${m} (${material.brdf.family})</p><table>${brdfRows(material.brdf)}</table>` };
+}
+
+function texelTable(renderer, x, y, stage) {
+  const data = renderer.data, i = renderer.atlas.indexOf[y * page.atlas.width + x], normal = renderer.normalOf([x, y]);
+  let rows = tableRow("texel", x + ", " + y);
+  rows += tableRow("normal", normal === null ? "of the mesh" : normal.map((v) => rounded(v, 4)).join(", "));
   rows += tableRow("sigma, relative", rounded(fromHalf(data.sigma[i]), 3));
-  const samples = fromHalf(data.samples[i]);
+  const samples = fromHalf(data.samples[i]), material = materialRows(data, i, stage);
   rows += tableRow("samples", samples === 0 ? "0 (filled in)" : samples);
-  if (data.residual) rows += tableRow("residual, 1/sr", rounded(fromHalf(data.residual[i]), 3));
-  rows += weightRows(data, "projection_weights", i, material.projection_basis.length) + weightRows(data, "weights", i, material.basis.length);
-  return `<table>${rows}</table><p class="hint">BRDF of material ${m} (${material.brdf.family})</p><table>${brdfRows(material.brdf)}</table>`;
+  if (data.normal_sigma) rows += tableRow("normal's sigma, deg", rounded(fromHalf(data.normal_sigma[i]) * 180 / Math.PI, 3));
+  if (data.residual && samples > 0) rows += tableRow("residual, 1/sr rms", rounded(fromHalf(data.residual[i]), 3));
+  return `<table>${rows}${material.rows}</table>${material.brdf}`;
 }

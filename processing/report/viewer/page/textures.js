@@ -1,5 +1,6 @@
 // The model as textures for the shaders.
 const kRow = 2046;  // texels a row of the textures that hold lists; a multiple of 6 and of 2
+const kNoMaterial = 65535, kHalfMinusOne = 0xbc00;
 
 function nearestTexture(data, width, height, type) {
   const texture = new THREE.DataTexture(data, width, height, THREE.RGBAFormat, type);
@@ -56,31 +57,55 @@ function writeBrdf(brdf, table, at) {
   });
 }
 
-// One row a BRDF: the single one, the clusters', the bases before principal functions, the final bases.
+// One row a BRDF: the single one, then of every layer the clusters', the bases before principal functions, the final bases.
+class BasisRows {
+  constructor() {
+    const all = [page.single, ...page.layers.flat().flatMap((m) => [m.brdf, ...m.projection_basis, ...m.basis])];
+    this.columns = 2 + 6 * Math.max(...all.map((brdf) => brdf.lobes.length));
+    this.table = [];
+    this.single = this.add([[page.single]], 1);
+  }
+
+  // The lists one below the other, all as long as the longest; rows that no BRDF fills are 0. Gives what a stage needs to find them.
+  add(lists, rowsPerMaterial = Math.max(0, ...lists.map((list) => list.length))) {
+    const firstRow = this.table.length;
+    for (const list of lists) {
+      for (let k = 0; k < rowsPerMaterial; ++k) {
+        const row = new Float32Array(4 * this.columns);
+        if (k < list.length) writeBrdf(list[k], row, 0);
+        this.table.push(row);
+      }
+    }
+    return { firstRow, rowsPerMaterial, rowCount: rowsPerMaterial };
+  }
+
+  addLayer(materials) {
+    const cluster = this.add(materials.map((m) => [m.brdf]), 1);
+    materials.forEach((material, m) => this.table[cluster.firstRow + m].set(material.colour, 4 * (this.columns - 1)));
+    return { cluster, projection: this.add(materials.map((m) => m.projection_basis)), basis: this.add(materials.map((m) => m.basis)) };
+  }
+
+  texture() {
+    const values = new Float32Array(4 * this.columns * this.table.length);
+    this.table.forEach((row, r) => values.set(row, 4 * this.columns * r));
+    return nearestTexture(values, this.columns, this.table.length, THREE.FloatType);
+  }
+}
+
+// By stage the values of the shader's uniforms; weights and materials: names of the atlas's textures.
 function basisTexture() {
-  const before = Math.max(0, ...page.materials.map((m) => m.projection_basis.length)), final = Math.max(...page.materials.map((m) => m.basis.length));
-  const count = page.materials.length, all = [page.single, ...page.materials.flatMap((m) => [m.brdf, ...m.projection_basis, ...m.basis])];
-  const columns = 2 + 6 * Math.max(...all.map((b) => b.lobes.length)), rows = 1 + count * (1 + before + final);
-  const table = new Float32Array(4 * columns * rows), row = (r) => 4 * columns * r;
-  writeBrdf(page.single, table, 0);
-  page.materials.forEach((material, m) => {
-    writeBrdf(material.brdf, table, row(1 + m));
-    table.set(material.colour, row(1 + m) + 4 * (columns - 1));
-    material.projection_basis.forEach((brdf, k) => writeBrdf(brdf, table, row(1 + count + m * before + k)));
-    material.basis.forEach((brdf, k) => writeBrdf(brdf, table, row(1 + count + count * before + m * final + k)));
-  });
-  const stages = {
-    single: { firstRow: 0, rowsPerMaterial: 0, rowCount: 1, weights: null },
-    cluster: { firstRow: 1, rowsPerMaterial: 1, rowCount: 1, weights: null },
-    pfa: { firstRow: 1 + count + count * before, rowsPerMaterial: final, rowCount: final, weights: "weights" },
-  };
-  if (before > 0) stages.projection = { firstRow: 1 + count, rowsPerMaterial: before, rowCount: before, weights: "projection_weights" };
-  return { basisMap: nearestTexture(table, columns, rows, THREE.FloatType), stages, colourColumn: columns - 1 };
+  const rows = new BasisRows(), layers = page.layers.map((materials) => rows.addLayer(materials)), stages = {};
+  for (const { name, layer, functions, texel_normals } of page.stages) {
+    const weights = { projection: "projection_weights_", basis: "weights_" }[functions];
+    const found = functions === "single" ? { ...rows.single, rowsPerMaterial: 0 } : layers[layer][functions];
+    stages[name] = { ...found, clusterRow: layers[layer].cluster.firstRow, weights: weights ? weights + layer : null, materials: "material_" + layer, texelNormals: texel_normals };
+  }
+  return { basisMap: rows.texture(), stages, colourColumn: rows.columns - 1 };
 }
 
 // Half floats as they come, one plane a basis BRDF, four planes a layer.
 function weightTexture(planes, texels) {
-  const { width, height } = page.atlas, size = width * height, count = planes.length / texels.length, layers = Math.ceil(count / 4);
+  const { width, height } = page.atlas, size = width * height, count = planes.length / texels.length, layers = Math.max(1, Math.ceil(count / 4));
   const data = new Uint16Array(4 * size * layers);
   for (let k = 0; k < count; ++k) {
     const start = 4 * size * (k >> 2) + (k & 3);
@@ -94,12 +119,22 @@ function weightTexture(planes, texels) {
   return texture;
 }
 
+// One more than the material in the two lower bytes; 0: none.
+function materialTexture(materials, texels) {
+  const bytes = new Uint8Array(4 * page.atlas.width * page.atlas.height);
+  texels.forEach((texel, i) => {
+    const code = materials[i] === kNoMaterial ? 0 : materials[i] + 1;
+    bytes.set([code & 255, code >> 8], 4 * texel);
+  });
+  return nearestTexture(bytes, page.atlas.width, page.atlas.height, THREE.UnsignedByteType);
+}
+
 function atlasTextures(data) {
   const { width, height } = page.atlas, size = width * height, texels = [], indexOf = new Int32Array(size).fill(-1);
   const normals = new Float32Array(4 * size), figures = new Uint16Array(4 * size);
   for (let i = 0; i < size; ++i) {
-    normals[4 * i + 3] = data.material[i] === 65535 ? -1 : data.material[i];
-    if (data.material[i] === 65535) continue;
+    normals[4 * i + 3] = data.textured[i] - 1;
+    if (data.textured[i] === 0) continue;
     indexOf[i] = texels.length;
     texels.push(i);
   }
@@ -107,13 +142,13 @@ function atlasTextures(data) {
     fromOctahedral(data.texel_normals[i], data.texel_normals[texels.length + i], normals, 4 * texel);
     figures[4 * texel] = data.sigma[i];
     figures[4 * texel + 1] = data.samples[i];
-    figures[4 * texel + 2] = data.residual ? data.residual[i] : 0;
+    figures[4 * texel + 2] = data.residual ? data.residual[i] : kHalfMinusOne;
+    figures[4 * texel + 3] = data.normal_sigma ? data.normal_sigma[i] : kHalfMinusOne;
   });
-  const textures = {
-    normalMap: nearestTexture(normals, width, height, THREE.FloatType),
-    figureMap: nearestTexture(figures, width, height, THREE.HalfFloatType),
-    weights: weightTexture(data.weights, texels),
-  };
-  if (data.projection_weights) textures.projection_weights = weightTexture(data.projection_weights, texels);
+  const textures = { normalMap: nearestTexture(normals, width, height, THREE.FloatType), figureMap: nearestTexture(figures, width, height, THREE.HalfFloatType) };
+  page.layers.forEach((materials, layer) => {
+    textures["material_" + layer] = materialTexture(data["material_" + layer], texels);
+    for (const name of ["weights_" + layer, "projection_weights_" + layer]) textures[name] = weightTexture(data[name], texels);
+  });
   return { textures, indexOf, texels };
 }

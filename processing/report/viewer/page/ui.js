@@ -4,6 +4,12 @@ const element = (id) => document.getElementById(id);
 const rounded = (value, digits = 4) => Number(value.toPrecision(digits)).toString();
 const css = (rgb) => "rgb(" + rgb.map((x) => Math.round(255 * x)).join(",") + ")";
 
+const kSkyPasses = 1024;  // then the noise is below what the screen shows
+const kSkyTime_ms = 20;   // a picture
+
+// What is drawn in colours of a scale, and its unit.
+const kFigureUnits = { sigma: "relative, one sigma", samples: "samples a texel", residual: "1/sr, rms of the samples", normal_sigma: "degrees, one sigma" };
+
 // A direction by its angles about z: turn and height, rad.
 const direction = ({ turn, height }) =>
   new THREE.Vector3(Math.cos(height) * Math.cos(turn), Math.cos(height) * Math.sin(turn), Math.sin(height));
@@ -20,24 +26,26 @@ class Viewer {
   }
 
   fillPanel() {
-    const shows = { radiance: "radiance", normals: "normals", clusters: "clusters", sigma: "uncertainty", samples: "number of samples" };
-    if (page.chunks.residual) shows.residual = "residual";
-    const names = { single: "one BRDF for all", cluster: "clusters", projection: "projection", pfa: "final" };
-    for (const [value, text] of Object.entries(shows)) element("show").add(new Option(text, value));
-    for (const [value, text] of Object.entries(names)) {
-      if (this.renderer.basis.stages[value]) element("stage").add(new Option(text, value, false, value === "pfa"));
+    const shows = { radiance: "radiance", normals: "normals", clusters: "clusters", samples: "number of samples", residual: "residual", sigma: "uncertainty", normal_sigma: "normal's uncertainty" };
+    const names = { single: "one BRDF for all", cluster: "clusters", projection: "mixed BRDFs", pfa: "principal functions", normal: "fitted normals" };
+    const held = page.stages.filter((stage) => stage.held);
+    for (const [value, text] of Object.entries(shows)) {
+      if (!kFigureUnits[value] || page.chunks[value]) element("show").add(new Option(text, value));
     }
+    for (const { name } of held) element("stage").add(new Option(names[name], name, false, name === held[held.length - 1].name));
+    if (this.renderer.data.texel_normals.every((code) => code === 65535)) element("normals").disabled = true;
+    const { data } = this.renderer;
     this.scales = {};
-    for (const name of ["sigma", "samples", "residual"]) {
-      if (!page.chunks[name]) continue;
-      const sorted = Float32Array.from(this.renderer.data[name], fromHalf).sort();
+    for (const name of Object.keys(kFigureUnits).filter((figure) => page.chunks[figure])) {
+      // Texels that were filled in would fill the scale with what nothing is known about.
+      const sorted = Float32Array.from(data[name].filter((_, i) => data.samples[i] > 0), fromHalf).sort();
       this.scales[name] = sorted[Math.floor(0.98 * (sorted.length - 1))] || 1;
     }
   }
 
   listen() {
-    for (const id of ["show", "stage", "normals", "shadows", "follow", "exposure", "distance"]) {
-      element(id).addEventListener("input", () => { if (id === "follow") this.keepLight(); this.ask(); });
+    for (const id of ["show", "stage", "normals", "light", "shadows", "follow", "exposure", "distance"]) {
+      element(id).addEventListener("input", () => { if (id === "follow") this.keepLight(); this.changed = this.changed || id !== "exposure"; this.ask(); });
     }
     addEventListener("resize", () => this.resize());
     this.canvas.addEventListener("contextmenu", (event) => event.preventDefault());
@@ -71,6 +79,8 @@ class Viewer {
     this.canvas.addEventListener("pointerup", release);
   }
 
+  stage() { return page.stages.find((stage) => stage.name === element("stage").value); }
+
   // Switching between a light that goes with the camera and one that stays leaves it where it is.
   keepLight() {
     const sign = element("follow").checked ? -1 : 1;
@@ -85,7 +95,7 @@ class Viewer {
 
   // While something moves, fewer pixels where all of them took too long; all of them 0.2 s after.
   move() {
-    this.moving = true;
+    this.moving = this.changed = true;
     clearTimeout(this.rest);
     this.rest = setTimeout(() => { this.moving = false; this.resize(); }, 200);
     this.ask();
@@ -111,10 +121,12 @@ class Viewer {
     u.light.value.copy(direction(this.lightAngles()).multiplyScalar(lightDistance));
     u.intensity.value.setScalar(Math.PI * lightDistance * lightDistance);  // a white diffuse surface in the middle has radiance 1
     u.exposure.value = 2 ** Number(element("exposure").value);
+    u.skyTurn.value = this.lightAngles().turn;  // the sky's x axis stands over where the lamp would be
     u.shadows.value = element("shadows").checked;
-    u.texelNormals.value = element("normals").value === "fitted";
+    if (element("normals").value !== "stage") u.texelNormals.value = element("normals").value === "fitted";
     u.figureScale.value = this.scales[show] || 1;
     element("exposure-text").value = (Number(element("exposure").value) >= 0 ? "+" : "") + element("exposure").value + " stops";
+    element("lamp-distance").hidden = element("light").value === "sky";
     element("distance-text").value = rounded(lightDistance, 3) + " m";
   }
 
@@ -122,11 +134,27 @@ class Viewer {
     this.resizeForMotion();
     const begin = performance.now();
     this.settle();
-    this.renderer.draw(element("show").value);
+    const sky = element("light").value === "sky" && element("show").value === "radiance";
+    if (sky) this.drawSky(); else this.renderer.draw(element("show").value);
     this.renderer.finish();
     this.frame_ms = performance.now() - begin;
-    element("speed").textContent = rounded(this.frame_ms, 3) + " ms for " + this.renderer.width + " x " + this.renderer.height + " pixels";
+    element("speed").textContent = rounded(this.frame_ms, 3) + " ms for " + this.renderer.width + " x " + this.renderer.height + " pixels" +
+      (sky ? ", " + this.renderer.passes + " of " + kSkyPasses + " samples a pixel" : "");
     this.legend(element("show").value);
+  }
+
+  // At least one more sample a pixel every time, as many as there is time for; all anew where something has changed.
+  drawSky() {
+    if (this.changed) this.renderer.passes = 0;
+    this.changed = false;
+    const begin = performance.now();
+    while (this.renderer.passes < kSkyPasses) {
+      this.renderer.addPass();
+      this.renderer.finish();
+      if (performance.now() - begin >= kSkyTime_ms) break;
+    }
+    this.renderer.drawMean(this.renderer.uniforms.exposure.value);
+    if (this.renderer.passes < kSkyPasses) this.ask();
   }
 
   resizeForMotion() {
@@ -139,12 +167,12 @@ class Viewer {
   }
 
   legend(show) {
-    const units = { sigma: "relative, one sigma", samples: "samples a texel", residual: "1/sr, root mean square" };
     if (show === "clusters") {
-      element("legend").innerHTML = page.materials.map((m, i) => `<div><span class="swatch" style="background:${css(m.colour)}"></span>material ${i}</div>`).join("");
+      element("legend").innerHTML = page.layers[this.stage().layer].map((m, i) => `<div><span class="swatch" style="background:${css(m.colour)}"></span>material ${i}</div>`).join("");
     } else if (this.scales[show]) {
       element("legend").innerHTML = '<div class="bar" style="background:linear-gradient(90deg,rgb(59,31,97),rgb(33,145,140),rgb(252,232,36))"></div>' +
-        `<div class="ends"><span>0</span><span>${units[show]}</span><span>${rounded(this.scales[show], 3)}</span></div>`;
+        `<div class="ends"><span>0</span><span>${kFigureUnits[show]}</span><span>${rounded(this.scales[show] * (show === "normal_sigma" ? 180 / Math.PI : 1), 3)}</span></div>` +
+        (show === "residual" ? '<div><span class="swatch" style="background:rgb(89,89,89)"></span>no samples</div>' : "");
     } else {
       element("legend").innerHTML = "";
     }
@@ -156,8 +184,10 @@ class Viewer {
     this.settle();
     const scale = this.renderer.width / this.canvas.clientWidth;
     const column = Math.floor(x * scale), row = this.renderer.height - 1 - Math.floor(y * scale);
-    const [texelX, texelY, material] = this.renderer.read("texel", column, row, 1, 1);
-    element("texel").innerHTML = material < 0 ? "" : texelTable(this.renderer, texelX, texelY);
+    const [texelX, texelY] = this.renderer.read("texel", column, row, 1, 1);
+    element("texel").innerHTML = texelX < 0 ? "" : texelTable(this.renderer, texelX, texelY, this.stage());
+    element("samples").hidden = texelX < 0 || !page.samples;
+    if (!element("samples").hidden) element("samples").innerHTML = sampleTable(this.renderer.lumitexels.at(texelX, texelY, (texel) => this.renderer.normalOf(texel)));
     this.ask();
   }
 }

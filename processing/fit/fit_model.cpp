@@ -1,0 +1,141 @@
+#include "processing/fit/fit_model.h"
+
+#include <algorithm>
+
+#include "drivers/error.h"
+#include "processing/fit/fill_atlas.h"
+#include "processing/fit/interreflection_stage.h"
+#include "processing/fit/normal_stage.h"
+#include "processing/fit/observe.h"
+#include "processing/fit/provenance.h"
+#include "processing/fit/reflectance_stage.h"
+#include "processing/surface/best_view.h"
+#include "processing/surface/gather_lumitexels.h"
+
+namespace lumitexel {
+namespace {
+
+// The paper's errors are as large everywhere as reflectance itself: no sample would be an outlier by them.
+std::vector<ErrorModel> outlier_errors(const Clustering& clustering, const ErrorModel& given, const FitOptions& options) {
+  std::vector<ErrorModel> errors;
+  for (const FittedMaterial& material : clustering.materials) {
+    errors.push_back(options.method == FitMethod::Paper ? given : material.model.error);
+  }
+  return errors;
+}
+
+std::vector<std::string> names_of(const std::vector<View>& views) {
+  std::vector<std::string> names;
+  for (const View& view : views) names.push_back(view.name);
+  return names;
+}
+
+std::vector<std::uint32_t> texels_of(const LumitexelSet& lumitexels) {
+  std::vector<std::uint32_t> texels;
+  for (const LumitexelTile& tile : lumitexels.tiles) texels.insert(texels.end(), tile.texel.begin(), tile.texel.end());
+  return texels;
+}
+
+}  // namespace
+
+FittedModel fit_model(const CalibratedSession& session, const FitOptions& options, StageTimer timer, Progress& progress) {
+  FittedModel result;
+  Model& model = result.model;
+  FitSummary& summary = result.summary;
+  model.channels = session.channels;
+
+  timer.begin("atlas");
+  const RayScene scene(session.mesh);
+  const std::vector<int> best_view = choose_best_views(session, scene);
+  summary.unseen_triangles = static_cast<std::size_t>(std::count(best_view.begin(), best_view.end(), kUnseen));
+  if (summary.unseen_triangles == best_view.size()) throw Error("fit: no view sees any triangle of the mesh");
+  const Atlas atlas = make_atlas(session, best_view);
+
+  timer.begin("lumitexels");
+  GatheredLumitexels gathered = gather_lumitexels(session, atlas, scene, progress);
+  Observations observations = observe(session, gathered.set);
+  summary.lumitexels = observations.lumitexels();
+  summary.samples = observations.samples.size();
+  summary.rejected = gathered.rejected;
+  summary.unusable = observations.rejected;
+  for (std::size_t i = 0; i < observations.lumitexels(); ++i) summary.starved += observations.of(i).empty();
+
+  const ErrorModel error = error_model(observations, options);
+  summary.error = error;
+  const FitInputs inputs{atlas, gathered.set, observations, options, error};
+  Reflectance reflectance;
+  const auto error_at = [&](FitStage stage) {
+    return stage_error(model, stage, observations, reflectance.clustering.label, reflectance.weights);
+  };
+  const auto fill = [&] {
+    fill_atlas(atlas, gathered.set, reflectance.clustering.label, reflectance.weights, reflectance.projection, model);
+  };
+  const auto fit_on_mesh_normals = [&](const std::string& pass) {
+    reflectance = fit_reflectance(inputs, pass, model, summary, timer, progress);
+    summary.single = error_at(FitStage::Single);
+    summary.cluster = error_at(FitStage::Cluster);
+    summary.projection = error_at(FitStage::Projection);
+    if (options.principal_functions) {
+      seek_principal_functions(inputs, reflectance, model, summary, timer, progress);
+      summary.pfa = error_at(FitStage::Pfa);
+    }
+    fill();
+  };
+  // The one BRDF for everything stays that of the mesh's normals: it is the stage before all others.
+  const auto fit_on_fitted_normals = [&](const std::string& pass) {
+    const Brdf single = model.single;
+    reflectance = fit_reflectance(inputs, pass, model, summary, timer, progress);
+    model.single = single;
+    summary.normal = error_at(FitStage::Normal);
+    fill();
+  };
+  const auto fit_again = [&](const std::string& pass) { has_normals(model) ? fit_on_fitted_normals(pass) : fit_on_mesh_normals(pass); };
+  fit_on_mesh_normals("");
+
+  const auto take_out = [&](IndirectRemoval& removal, FitStage stage) {
+    progress.begin("light between surfaces", 1, "rounds");
+    const bool worth_it = removal.remove(model, stage);
+    progress.update(1);
+    if (worth_it) model.indirect_bounces = options.interreflections.light.bounces;
+    return worth_it;
+  };
+  std::optional<IndirectRemoval> indirect;
+  bool changed = false;
+  if (options.interreflections.wanted) {
+    timer.begin("light between surfaces");
+    indirect.emplace(session, gathered.set, scene, model, options.interreflections);
+    if (indirect->can_matter()) changed = take_out(*indirect, last_stage(model));
+    if (changed) observations = observe(session, gathered.set);
+  }
+  if (auto normals = seek_normals(session, inputs, reflectance.clustering.label, model, summary, timer, progress)) {
+    turn(normals->normal, gathered.set);
+    observations = observe(session, gathered.set);
+    keep_before_normals(model, summary);
+    set_normal_sigma(gathered.set, normals->sigma_rad, options.normal_fit.prior.coarse_sigma_rad, model);
+    fit_again(" on fitted normals");
+  } else if (changed) {
+    fit_again(" without light between surfaces");
+  }
+  for (int round = 2; changed && round <= options.interreflections.rounds; ++round) {
+    timer.begin("light between surfaces, round " + std::to_string(round));
+    changed = take_out(*indirect, last_stage(model));
+    if (!changed) break;
+    observations = observe(session, gathered.set);
+    fit_again(", round " + std::to_string(round));
+  }
+  if (indirect) {
+    summary.indirect = indirect->summary();
+    model.indirect = indirect->map(model.width, model.height);
+  }
+
+  timer.begin("model");
+  summary.outliers = find_outliers(model, observations, outlier_errors(reflectance.clustering, error, options),
+                                   reflectance.clustering.label, reflectance.weights, session.views.size());
+  model.outliers_csv = outliers_csv(summary.outliers, names_of(session.views), texels_of(gathered.set), atlas.width);
+  timer.end();
+  summary.stages = timer.stages();
+  model.provenance_json = provenance_json(session, options, summary);
+  return result;
+}
+
+}  // namespace lumitexel

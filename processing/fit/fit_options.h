@@ -1,0 +1,57 @@
+// What the user may choose about a fit.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "processing/brdf/cluster_materials.h"
+#include "processing/interreflection/indirect_light.h"
+#include "processing/normals/fit_normals.h"
+
+namespace lumitexel {
+
+enum class FitMethod {
+  Lumitexel,  // ours
+  Paper       // as published (paper_clustering.h), with the plain projection
+};
+
+// Fitted: normals finer than the mesh's (section 9 of the paper), then everything once more. Auto: where left-out photographs are then
+// predicted better (normals_worth.h).
+enum class NormalChoice { Auto, Fitted, Mesh };
+const char* to_string(NormalChoice choice);  // "auto", "fitted", "mesh"
+
+// Whether light between the object's surfaces is sought (interreflection_stage.h), and how.
+struct InterreflectionOptions {
+  bool wanted = true;
+  int rounds = 2;  // at most; the first costs no fit of its own where normals are fitted after it
+  IndirectOptions light;
+};
+
+struct FitOptions {
+  std::string quality = "standard";
+  FitMethod method = FitMethod::Lumitexel;
+  int materials = 4;                        // 0: as many as the samples ask for
+  BrdfFamily family = BrdfFamily::Lafortune;
+  int most_lobes = 1;                       // each must be asked for by the samples; with the paper's method it is the number
+  bool principal_functions = false;         // tried for each material, and kept where left-out lumitexels are predicted better
+  NormalChoice normals = NormalChoice::Auto;
+  NormalFitOptions normal_fit;
+  InterreflectionOptions interreflections;
+  ErrorSource errors = ErrorSource::Auto;
+  double intensity_weight = 0.3;            // s of the paper's eq. 6; only the paper's method looks at it
+  std::size_t learning_lumitexels = 10000;  // that the materials are learnt on
+  std::size_t final_lumitexels = 5000;      // of its own that each material is fitted to at the end
+  bool shared_lobe_shape = true;            // one lobe shape for all channels of a material
+  bool plain_projection = false;            // the paper's least squares for the weights, without a prior
+  // What no model on the coarse mesh can predict: a share of each prediction, and a share of the session's median
+  // reflectance under everything. Both found on held-out photographs of two sessions; see the README.
+  double relative_error = 0.3, error_floor_share = 0.3;
+
+  // Learning and final lumitexels. draft: 2,000, 2,000; standard: 10,000, 5,000; reference: all. Rounds of light between surfaces: 1, 2, 4. Throws BadInput on any other name.
+  static FitOptions preset(const std::string& quality);
+};
+
+// The paper's method, complete and exactly as published: each channel a lobe of its own, least squares, principal functions always moved.
+FitOptions as_published(FitOptions options);
+
+}  // namespace lumitexel

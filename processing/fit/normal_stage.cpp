@@ -1,0 +1,57 @@
+#include "processing/fit/normal_stage.h"
+
+#include "processing/normals/sigma_scale.h"
+
+namespace lumitexel {
+
+std::optional<FittedNormals> seek_normals(const CalibratedSession& session, const FitInputs& inputs, const std::vector<int>& label,
+                                          const Model& model, FitSummary& summary, StageTimer& timer, Progress& progress) {
+  const FitOptions& options = inputs.options;
+  if (options.normals == NormalChoice::Mesh) return {};
+  std::vector<std::vector<Brdf>> bases;
+  for (const ModelMaterial& material : model.materials) bases.push_back(material.basis);
+  const double median = median_reflectance(inputs.observations);
+  if (options.normals == NormalChoice::Auto) {
+    timer.begin("are normals worth it");
+    progress.begin("are normals worth it", 1, "trials");
+    summary.normals_worth =
+        normals_worth(session, inputs.lumitexels, inputs.atlas.width, bases, label, median, options.normal_fit);
+    progress.update(1);
+    if (!summary.normals_worth->enough()) return {};
+  }
+  timer.begin("normals");
+  progress.begin("normals", options.normal_fit.steps, "steps");
+  const DirectedLumitexels lumitexels(session, inputs.lumitexels);
+  FittedNormals fitted = fit_normals(lumitexels, lumitexel_neighbours(lumitexels, inputs.atlas.width), bases, label, median,
+                                     options.normal_fit, [&](int step) { progress.update(step); });
+  summary.normal_sigma_scale =
+      normal_sigma_scale(session, inputs.lumitexels, inputs.atlas.width, bases, label, median, options.normal_fit);
+  for (float& sigma : fitted.sigma_rad) {
+    sigma = static_cast<float>(std::min(*summary.normal_sigma_scale * static_cast<double>(sigma), options.normal_fit.prior.coarse_sigma_rad));
+  }
+  return fitted;
+}
+
+void turn(const std::vector<Eigen::Vector3d>& normals, LumitexelSet& lumitexels) {
+  std::size_t i = 0;
+  for (LumitexelTile& tile : lumitexels.tiles) {
+    for (Eigen::Vector3d& normal : tile.normal) normal = normals[i++];
+  }
+}
+
+void keep_before_normals(Model& model, FitSummary& summary) {
+  model.before_normals = ReflectanceLayer{model.materials, std::move(model.material), std::move(model.weights),
+                                          std::move(model.projection_weights)};
+  model.projection_weights = Image();
+  summary.texels_before_normals = summary.texels_by_material;
+}
+
+void set_normal_sigma(const LumitexelSet& lumitexels, const std::vector<float>& sigma_rad, double coarse_sigma_rad, Model& model) {
+  model.normal_sigma = Image(model.width, model.height, 1, static_cast<float>(coarse_sigma_rad));
+  std::size_t i = 0;
+  for (const LumitexelTile& tile : lumitexels.tiles) {
+    for (const std::uint32_t texel : tile.texel) model.normal_sigma.data[texel] = sigma_rad[i++];
+  }
+}
+
+}  // namespace lumitexel

@@ -1,0 +1,133 @@
+#include "processing/fit/provenance.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace lumitexel {
+namespace {
+
+using nlohmann::json;
+
+json rejected_json(const RejectionCounts& rejected) {
+  return {{"outside_frame", rejected.outside_frame}, {"hidden", rejected.hidden},
+          {"in_shadow", rejected.in_shadow},         {"near_depth_edge", rejected.near_depth_edge},
+          {"near_shadow_edge", rejected.near_shadow_edge}, {"grazing", rejected.grazing},
+          {"photograph_flag", rejected.photograph_flag}};
+}
+
+json stages_json(const std::vector<StageCost>& stages) {
+  json list = json::array();
+  for (const StageCost& stage : stages) {
+    list.push_back({{"name", stage.name}, {"seconds", stage.seconds}, {"peak_bytes", stage.peak_bytes}});
+  }
+  return list;
+}
+
+json finite_or_null(double value) { return std::isfinite(value) ? json(value) : json(); }
+
+json prior_json(const std::vector<PriorChoice>& prior) {
+  json list = json::array();
+  for (const PriorChoice& choice : prior) {
+    list.push_back({{"diffuse_width", finite_or_null(choice.prior.diffuse_width)},
+                    {"gloss_width", finite_or_null(choice.prior.gloss_width)},
+                    {"left_out_samples", choice.samples},
+                    {"left_out_error", choice.left_out_error},
+                    {"left_out_error_without", choice.left_out_error_without}});
+  }
+  return list;
+}
+
+json counts_json(const CountByReason& count) {
+  json object = json::object();
+  for (const OutlierReason reason : kOutlierReasons) object[to_string(reason)] = count[static_cast<std::size_t>(reason)];
+  return object;
+}
+
+json outliers_json(const Outliers& outliers, const CalibratedSession& session) {
+  json by_view = json::object(), by_material = json::array();
+  for (std::size_t v = 0; v < outliers.by_view.size(); ++v) {
+    if (!session.views[v].heldout) by_view[session.views[v].name] = counts_json(outliers.by_view[v]);
+  }
+  for (const CountByReason& count : outliers.by_material) by_material.push_back(counts_json(count));
+  return {{"beyond_scales", kOutlierScales},
+          {"samples", outliers.samples},
+          {"count", counts_json(outliers.count)},
+          {"by_view", by_view},
+          {"by_material", by_material}};
+}
+
+json indirect_json(const IndirectSummary& indirect, const IndirectOptions& light) {
+  return {{"bounces", light.bounces},
+          {"paths_a_sample", light.paths},
+          {"largest_albedo", indirect.albedo},
+          {"largest_bound", indirect.largest_bound},
+          {"lumitexels_concerned", indirect.concerned},
+          {"samples_followed", indirect.samples},
+          {"share_of_reflectance", indirect.share},
+          {"change_by_round", indirect.change},
+          {"dropped_paths", indirect.dropped_paths}};
+}
+
+}  // namespace
+
+std::string provenance_json(const CalibratedSession& session, const FitOptions& options, const FitSummary& summary) {
+  json object;
+  object["session_key"] = session.key;
+  object["options"] = {{"quality", options.quality},
+                       {"method", options.method == FitMethod::Paper ? "paper" : "lumitexel"},
+                       {"family", to_string(options.family)},
+                       {"most_lobes", options.most_lobes},
+                       {"principal_functions", options.principal_functions},
+                       {"normals", to_string(options.normals)},
+                       {"interreflections", options.interreflections.wanted},
+                       {"intensity_weight", options.method == FitMethod::Paper ? json(options.intensity_weight) : json(nullptr)},
+                       {"materials", options.materials},
+                       {"learning_lumitexels", options.learning_lumitexels},
+                       {"final_lumitexels", options.final_lumitexels},
+                       {"shared_lobe_shape", options.shared_lobe_shape},
+                       {"plain_projection", options.plain_projection},
+                       {"errors", to_string(options.errors)},
+                       {"relative_error", summary.error.relative},
+                       {"error_floor", summary.error.floor}};
+  object["errors"] = to_string(summary.errors);  // whose they are, never "auto"
+  object["materials"] = summary.texels_by_material.size();
+  object["lumitexels"] = summary.lumitexels;
+  object["samples"] = summary.samples;
+  object["starved_lumitexels"] = summary.starved;
+  object["unseen_triangles"] = summary.unseen_triangles;
+  object["rejected"] = rejected_json(summary.rejected);
+  object["rejected"]["not_finite"] = summary.unusable.not_finite;
+  object["rejected"]["below_surface"] = summary.unusable.below_surface;
+  object["stages"] = stages_json(summary.stages);
+  object["rms"] = {{"single", summary.single.rms}, {"cluster", summary.cluster.rms}, {"projection", summary.projection.rms}};
+  object["rms_by_channel"] = {{"single", summary.single.by_channel},
+                              {"cluster", summary.cluster.by_channel},
+                              {"projection", summary.projection.by_channel}};
+  object["rms_by_material"] = {{"single", summary.single.by_material},
+                               {"cluster", summary.cluster.by_material},
+                               {"projection", summary.projection.by_material}};
+  if (summary.pfa) {
+    object["rms"]["pfa"] = summary.pfa->rms;
+    object["rms_by_channel"]["pfa"] = summary.pfa->by_channel;
+    object["rms_by_material"]["pfa"] = summary.pfa->by_material;
+  }
+  if (summary.normal) {
+    object["rms"]["normal"] = summary.normal->rms;
+    object["rms_by_channel"]["normal"] = summary.normal->by_channel;
+    object["rms_by_material_on_fitted_normals"] = summary.normal->by_material;
+  }
+  object["normals"] = summary.normal ? "fitted" : "mesh";
+  if (summary.normals_worth) {
+    object["normals_worth"] = {{"deviance_gain", summary.normals_worth->gain},
+                               {"deviance_gain_sigma", summary.normals_worth->gain_sigma},
+                               {"left_out_samples", summary.normals_worth->samples}};
+  }
+  if (summary.normal_sigma_scale) object["normal_sigma_scale"] = *summary.normal_sigma_scale;
+  if (summary.indirect) object["light_between_surfaces"] = indirect_json(*summary.indirect, options.interreflections.light);
+  object["outliers"] = outliers_json(summary.outliers, session);
+  object["texels_by_material"] = summary.texels_by_material;
+  object["prior"] = prior_json(summary.prior);
+  return object.dump(2);
+}
+
+}  // namespace lumitexel

@@ -1,0 +1,14 @@
+// Where a model came from, as the JSON object that model.json carries.
+#pragma once
+
+#include <string>
+
+#include "processing/fit/fit_model.h"
+
+namespace lumitexel {
+
+// Keys: session_key, options, materials, lumitexels, samples, starved_lumitexels, unseen_triangles, rejected, stages,
+// rms, rms_by_channel, rms_by_material, texels_by_material, prior.
+std::string provenance_json(const CalibratedSession& session, const FitOptions& options, const FitSummary& summary);
+
+}  // namespace lumitexel

@@ -1,0 +1,169 @@
+#include "processing/fit/reflectance_stage.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "drivers/error.h"
+#include "processing/brdf/material_basis.h"
+#include "processing/brdf/paper_clustering.h"
+#include "processing/brdf/principal_functions.h"
+#include "processing/brdf/select_lumitexels.h"
+#include "processing/fit/fill_atlas.h"
+
+namespace lumitexel {
+namespace {
+
+ClusterOptions cluster_options(const FitOptions& options, const ErrorModel& error) {
+  ClusterOptions cluster;
+  cluster.errors = options.errors;
+  cluster.materials = options.materials;
+  cluster.final_lumitexels = options.final_lumitexels;
+  cluster.fit.family = options.family;
+  cluster.fit.most_lobes = options.most_lobes;
+  cluster.fit.shared_shape = options.shared_lobe_shape;
+  cluster.fit.error = error;
+  return cluster;
+}
+
+Clustering learn_materials(const Observations& observations, const FitOptions& options, const ErrorModel& error,
+                           Progress& progress) {
+  const int wanted = options.materials > 0 ? options.materials : kMostMaterials;
+  progress.begin("materials", wanted, "materials");
+  const auto selection = select_lumitexels(observations, options.learning_lumitexels);
+  if (selection.empty()) {
+    throw Error("fit: no surface point has " + std::to_string(kFewestSamples) +
+                " samples; more views or more light on the object are needed");
+  }
+  const auto report = [&](int found) { progress.update(std::min(found, wanted)); };
+  if (options.method == FitMethod::Paper) {
+    const PaperOptions paper{options.materials, options.most_lobes, options.intensity_weight, options.final_lumitexels};
+    return paper_clustering(observations, selection, paper, report);
+  }
+  return cluster_materials(observations, selection, cluster_options(options, error), report);
+}
+
+std::vector<LumitexelList> members_of(const Clustering& clustering) {
+  std::vector<LumitexelList> members(clustering.materials.size());
+  for (std::size_t i = 0; i < clustering.label.size(); ++i) members[static_cast<std::size_t>(clustering.label[i])].push_back(i);
+  return members;
+}
+
+PriorChoice prior_for(const Observations& observations, const LumitexelList& members, const std::vector<Brdf>& basis,
+                      const MaterialModel& material, const FitOptions& options) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (options.plain_projection) return {{kInfinity, kInfinity}, 0.0, 0.0, 0};
+  return choose_prior(observations, members, basis, material.brdf, material.error);
+}
+
+std::vector<TexelWeights> project_all(const Observations& observations, const Clustering& clustering, const Model& model,
+                                      const FitOptions& options, FitSummary& summary, Progress& progress) {
+  const std::vector<LumitexelList> members = members_of(clustering);
+  std::vector<TexelWeights> weights(clustering.label.size());
+  progress.begin("texel weights", static_cast<std::int64_t>(model.materials.size()), "materials");
+  for (std::size_t j = 0; j < members.size(); ++j) {
+    const auto& basis = model.materials[j].basis;
+    const MaterialModel& material = clustering.materials[j].model;
+    summary.prior.push_back(prior_for(observations, members[j], basis, material, options));
+    const TexelPrior prior = summary.prior.back().prior;
+    oneapi::tbb::parallel_for(std::size_t{0}, members[j].size(), [&](std::size_t k) {
+      const std::size_t i = members[j][k];
+      weights[i] = project_texel(observations.of(i), observations.channels, basis, material.brdf, material.error, prior);
+    });
+    summary.texels_by_material.push_back(static_cast<std::size_t>(std::count_if(
+        members[j].begin(), members[j].end(), [&](std::size_t i) { return !observations.of(i).empty(); })));
+    progress.update(static_cast<std::int64_t>(j + 1));
+  }
+  return weights;
+}
+
+// Each material's basis moved by principal function analysis, if lumitexels that it was not learnt from are then predicted better. The
+// paper moves it always.
+void move_bases(const Observations& observations, const Clustering& clustering, const FitOptions& options, const FitSummary& summary,
+                Model& model, Progress& progress) {
+  constexpr double kLeastGain = 0.005;  // of the left-out error: less is not worth other functions
+  const std::vector<LumitexelList> members = members_of(clustering);
+  progress.begin("basis functions", static_cast<std::int64_t>(members.size()), "materials");
+  for (std::size_t j = 0; j < members.size(); ++j) {
+    const MaterialModel& material = clustering.materials[j].model;
+    std::vector<Brdf>& basis = model.materials[j].basis;
+    PrincipalOptions principal;
+    principal.most_lumitexels = options.final_lumitexels;
+    principal.prior = summary.prior[j].prior;
+    principal.fit = clustering.fit;
+    const auto moved = [&](const LumitexelList& learnt) {
+      return principal_functions(observations, learnt, basis, material.error, principal).basis;
+    };
+    bool better = options.method == FitMethod::Paper;
+    if (!better) {
+      LumitexelList learnt, left_out;
+      for (std::size_t k = 0; k < members[j].size(); ++k) (k % 2 == 0 ? learnt : left_out).push_back(members[j][k]);
+      const double before = prior_for(observations, left_out, basis, material, options).left_out_error;
+      const double after = prior_for(observations, left_out, moved(learnt), material, options).left_out_error;
+      better = after < (1.0 - kLeastGain) * before;
+    }
+    if (better) basis = moved(members[j]);
+    progress.update(static_cast<std::int64_t>(j + 1));
+  }
+}
+
+void set_materials(const Clustering& clustering, const Atlas& atlas, const LumitexelSet& lumitexels,
+                   const Observations& observations, Model& model) {
+  std::vector<Brdf> brdfs;
+  for (const FittedMaterial& material : clustering.materials) brdfs.push_back(material.model.brdf);
+  const auto counts = neighbour_counts(atlas, lumitexels, clustering.label, brdfs.size());
+  const auto bases = material_bases(brdfs, counts, observations);
+  for (std::size_t j = 0; j < brdfs.size(); ++j) model.materials.push_back({brdfs[j], bases[j], {}});
+  model.single = clustering.single.brdf;
+}
+
+}  // namespace
+
+double median_reflectance(const Observations& observations) {
+  std::vector<float> values;
+  for (const Observation& sample : observations.samples) {
+    values.insert(values.end(), sample.reflectance.begin(), sample.reflectance.begin() + observations.channels);
+  }
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return static_cast<double>(*middle);
+}
+
+ErrorModel error_model(const Observations& observations, const FitOptions& options) {
+  if (observations.samples.empty()) return {};
+  ErrorModel error;
+  error.relative = options.relative_error;
+  error.floor = std::max(1e-6, options.error_floor_share * median_reflectance(observations));
+  return error;
+}
+
+Reflectance fit_reflectance(const FitInputs& inputs, const std::string& pass, Model& model, FitSummary& summary, StageTimer& timer,
+                            Progress& progress) {
+  const auto& [atlas, lumitexels, observations, options, error] = inputs;
+  Reflectance result;
+  model.materials.clear();
+  summary.prior.clear();
+  summary.texels_by_material.clear();
+  timer.begin("materials" + pass);
+  result.clustering = learn_materials(observations, options, error, progress);
+  summary.errors = result.clustering.errors;
+  set_materials(result.clustering, atlas, lumitexels, observations, model);
+  timer.begin("projection" + pass);
+  result.weights = project_all(observations, result.clustering, model, options, summary, progress);
+  return result;
+}
+
+void seek_principal_functions(const FitInputs& inputs, Reflectance& reflectance, Model& model, FitSummary& summary, StageTimer& timer,
+                              Progress& progress) {
+  timer.begin("principal functions");
+  for (ModelMaterial& material : model.materials) material.projection_basis = material.basis;
+  move_bases(inputs.observations, reflectance.clustering, inputs.options, summary, model, progress);
+  summary.prior.clear();
+  summary.texels_by_material.clear();
+  reflectance.projection = std::move(reflectance.weights);
+  reflectance.weights = project_all(inputs.observations, reflectance.clustering, model, inputs.options, summary, progress);
+}
+
+}  // namespace lumitexel

@@ -1,0 +1,68 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "processing/fit/tradeoff.h"
+
+namespace lumitexel {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json to_json(const ErrorWithSpread& error) { return {{"value", finite_or_null(error.value)}, {"sigma", finite_or_null(error.sigma)}}; }
+
+Json options_json(const TradeoffSetting& setting) {
+  const FitOptions& options = setting.options;
+  return {{"quality", options.quality},
+          {"method", options.method == FitMethod::Paper ? "paper" : "lumitexel"},
+          {"family", to_string(options.family)},
+          {"most_lobes", options.most_lobes},
+          {"principal_functions", options.principal_functions},
+          {"materials", options.materials},
+          {"learning_lumitexels", options.learning_lumitexels},
+          {"final_lumitexels", options.final_lumitexels}};
+}
+
+Json measured_json(const TradeoffMeasurement& measurement) {
+  Json views = Json::array();
+  for (const double error : measurement.clipped_by_view) views.push_back(finite_or_null(error));
+  return {{"materials", measurement.materials},
+          {"fit_views", measurement.fit_views},
+          {"seconds", measurement.seconds},
+          {"cpu_seconds", measurement.cpu_seconds},
+          {"peak_bytes", measurement.peak_bytes ? Json(*measurement.peak_bytes) : Json(nullptr)},
+          {"heldout",
+           {{"relative_rms", to_json(measurement.relative)},
+            {"clipped_rms", to_json(measurement.clipped)},
+            {"sqrt_rms", to_json(measurement.square_root)},
+            {"clipped_rms_by_view", views}}}};
+}
+
+Json gain_json(const std::optional<TradeoffGain>& gain) {
+  if (!gain) return nullptr;
+  return {{"gain", to_json(gain->gain)}, {"more_seconds", gain->more_seconds}, {"gain_per_second", finite_or_null(gain->per_second)}};
+}
+
+}  // namespace
+
+std::string tradeoff_json(const Tradeoff& tradeoff) {
+  const std::vector<bool> front = pareto_front(tradeoff.measurements);
+  Json settings = Json::array();
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    const TradeoffMeasurement& measurement = tradeoff.measurements[i];
+    Json entry = {{"name", measurement.setting.name}, {"what", measurement.setting.what}, {"options", options_json(measurement.setting)}};
+    entry["failure"] = measurement.measured() ? Json(nullptr) : Json(measurement.failure);
+    entry["measured"] = measurement.measured() ? measured_json(measurement) : Json(nullptr);
+    entry["pareto_front"] = static_cast<bool>(front[i]);
+    entry["against_standard"] = gain_json(gain_over_standard(tradeoff, measurement));
+    settings.push_back(entry);
+  }
+  const Json document = {{"session_key", tradeoff.session_key},
+                         {"fit_views", tradeoff.fit_views},
+                         {"heldout_views", tradeoff.heldout_views},
+                         {"settings", settings}};
+  return document.dump(2);
+}
+
+}  // namespace lumitexel

@@ -1,0 +1,69 @@
+#include "processing/fit/tradeoff_settings.h"
+
+#include <algorithm>
+
+#include "drivers/error.h"
+
+namespace lumitexel {
+namespace {
+
+constexpr const char* kReferenceSetting = "reference";
+constexpr const char* kPaperSetting = "paper";
+
+// 10,000 learning lumitexels, one lobe, Lafortune lobes, errors by left-out samples and all views are the standard preset itself.
+std::vector<TradeoffSetting> all_settings(int materials) {
+  std::vector<TradeoffSetting> settings;
+  const auto add = [&](const std::string& name, const std::string& what, const std::string& quality = "standard") -> TradeoffSetting& {
+    settings.push_back({name, what, FitOptions::preset(quality)});
+    settings.back().options.materials = materials;
+    return settings.back();
+  };
+  add("draft", "draft preset: learnt on 2,000 points", "draft");
+  for (const std::size_t learning : {1000u, 2000u, 5000u}) {
+    const std::string number = std::to_string(learning);
+    add("learning-" + number, "materials learnt on " + number + " points").options.learning_lumitexels = learning;
+  }
+  add(kStandardSetting, "standard preset: 10,000 points, one Lafortune lobe, all views");
+  add("principal", "basis functions moved where that predicts better").options.principal_functions = true;
+  add("errors-given", "30 % errors everywhere, nothing estimated").options.errors = ErrorSource::Given;
+  add("lobes-2", "up to two lobes a material").options.most_lobes = 2;
+  add("ggx", "GGX lobes").options.family = BrdfFamily::Ggx;
+  FitOptions& paper = add(kPaperSetting, "clustering, fits and projection as published").options;
+  paper = as_published(paper);
+  for (const std::size_t views : {16u, 12u, 8u}) {
+    const std::string number = std::to_string(views);
+    add("views-" + number, "fitted to " + number + " photographs").fit_views = views;
+  }
+  add(kReferenceSetting, "reference preset: learnt on all points", "reference");
+  return settings;
+}
+
+void require_known(const std::vector<TradeoffSetting>& settings, const std::vector<std::string>& names) {
+  std::string known;
+  for (const TradeoffSetting& setting : settings) known += (known.empty() ? "" : ", ") + setting.name;
+  for (const std::string& name : names) {
+    const bool found = std::any_of(settings.begin(), settings.end(), [&](const auto& setting) { return setting.name == name; });
+    if (!found) throw BadInput("--only", "'" + name + "'", "one of " + known);
+  }
+}
+
+}  // namespace
+
+std::vector<TradeoffSetting> tradeoff_settings(int materials, bool full, const std::vector<std::string>& only) {
+  std::vector<TradeoffSetting> settings = all_settings(materials);
+  require_known(settings, only);
+  if (materials == 0) {
+    if (std::find(only.begin(), only.end(), kPaperSetting) != only.end()) {
+      throw BadInput("--materials", "auto with --only paper", "a number: the paper does not choose it");
+    }
+    std::erase_if(settings, [](const TradeoffSetting& setting) { return setting.name == kPaperSetting; });
+  }
+  std::erase_if(settings, [&](const TradeoffSetting& setting) {
+    if (setting.name == kReferenceSetting && full) return false;
+    if (only.empty()) return setting.name == kReferenceSetting;
+    return std::find(only.begin(), only.end(), setting.name) == only.end();
+  });
+  return settings;
+}
+
+}  // namespace lumitexel

@@ -1,0 +1,25 @@
+// The settings of a fit between which `lumitexel tradeoff` lets the user's own session decide.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "processing/fit/fit_options.h"
+
+namespace lumitexel {
+
+inline constexpr const char* kStandardSetting = "standard";  // that the others are compared with
+
+struct TradeoffSetting {
+  std::string name;  // "learning-2000"
+  std::string what;  // in words, against the standard preset
+  FitOptions options;
+  std::size_t fit_views = 0;  // 0: all
+};
+
+// The presets, and the standard preset with one thing changed at a time. `only`: these and no others, in the list's order;
+// if empty, all but the reference preset. `full`: the reference preset too. Throws BadInput on a name that is not in the list, and lists them.
+// materials 0: each fit as many as its samples ask for; the paper's method needs a number and is left out then, or BadInput if it is asked for.
+std::vector<TradeoffSetting> tradeoff_settings(int materials, bool full, const std::vector<std::string>& only);
+
+}  // namespace lumitexel
