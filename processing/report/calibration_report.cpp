@@ -81,38 +81,6 @@ std::string sensor_section(const SensorSummary& sensor, std::int64_t hot_pixels)
                        html::table({"", "value", "sigma"}, rows) + html::table({"", ""}, darks) + notes_list(sensor.notes));
 }
 
-std::string views_section(const CalibrationSummary& summary) {
-  Rows rows;
-  for (std::size_t v = 0; v < summary.lights.size(); ++v) {
-    const LightSummary& light = summary.lights[v];
-    const PoseSummary pose = v < summary.poses.size() ? summary.poses[v] : PoseSummary{};
-    const bool lamp = v < summary.lamp.factor.size();
-    rows.push_back({light.view, measured(pose.silhouette_px), measured(pose.sigma_m, 1e3), measured(pose.sigma_deg),
-                    std::to_string(pose.tags), pose.dominant, html::number(1e3 * light.sigma_m),
-                    std::to_string(light.highlights), light.from_spheres ? "spheres and arm" : "arm alone",
-                    lamp ? html::number(summary.lamp.factor[v], 5) : "–",
-                    lamp ? html::number(summary.lamp.factor_sigma[v], 2) : "–"});
-  }
-  std::vector<std::string> strays;
-  for (const StrayLightSummary& light : summary.stray_lights) {
-    const Eigen::Vector3d& at = light.position_in_rig;
-    strays.push_back("Stray light at (" + html::number(at.x()) + ", " + html::number(at.y()) + ", " + html::number(at.z()) +
-                     ") m in the rig's frame, sigma " + html::number(1e3 * light.sigma_m) + " mm, on the spheres of " +
-                     std::to_string(light.views.size()) + " views: it is in their photographs too, and on the gray card, so the scale is wrong. Move or cover it.");
-  }
-  const std::string problem =
-      summary.pose_problem.empty() ? "" : " Poses are the rig description's: " + summary.pose_problem;
-  return html::section(
-      "Views",
-      "One sigma each. Silhouette: median distance between the mesh's outline and the photograph's. Lamp: output over "
-      "that at the gray card." + problem,
-      "<div class=\"scroll\">" +
-          html::table({"view", "silhouette, px", "pose, mm", "pose, °", "tags", "mostly from", "light, mm", "highlights",
-                       "light from", "lamp", "sigma"},
-                      rows) +
-          "</div>" + notes_list(strays));
-}
-
 std::string share_bars(const CalibrationSummary& summary) {
   std::string bars;
   for (const UncertaintyShare& share : summary.shares) {
@@ -122,30 +90,6 @@ std::string share_bars(const CalibrationSummary& summary) {
             "%\"></div></span><span class=\"value\">" + percent + " %</span>";
   }
   return bars.empty() ? "" : "<h3>What its variance comes from</h3><div class=\"bars\">" + bars + "</div>";
-}
-
-// Imported: poses given elsewhere, held against the masks.
-std::string given_section(const CalibrationSummary& summary) {
-  Rows rows;
-  for (const PoseSummary& pose : summary.poses) {
-    rows.push_back({pose.view, pose.source, measured(pose.given_px), measured(pose.silhouette_px), measured(pose.contradiction, 1.0, 4),
-                    measured(pose.sigma_m, 1e3), measured(pose.sigma_deg), pose.dominant, html::escaped(pose.problem)});
-  }
-  std::string text =
-      "Poses were given with the session. One is replaced only if its silhouette contradicts it: by a chi-square with six degrees of "
-      "freedom, at 5 % for all views together. Silhouette: median distance between the mesh's outline and the mask's rim. One sigma "
-      "each. Lights and scale are as given; nothing in the session measures them.";
-  if (!summary.pose_problem.empty()) text += " Nothing was compared: " + summary.pose_problem + ".";
-  if (summary.rim_offset_px) {
-    text += " The masks' rims lie " + measured(summary.rim_offset_px) + " ± " + measured(summary.rim_offset_sigma_px, 1.0, 2) +
-            " px outside of the mesh's outline.";
-  }
-  return html::section("Poses", text,
-                       "<div class=\"scroll\">" +
-                           html::table({"view", "pose", "silhouette as given, px", "silhouette, px", "chi-square of the given", "sigma, mm",
-                                        "sigma, °", "mostly from", ""},
-                                       rows) +
-                           "</div>" + share_bars(summary));
 }
 
 std::string scale_section(const CalibrationSummary& summary) {
@@ -167,12 +111,67 @@ std::string scale_section(const CalibrationSummary& summary) {
 
 }  // namespace
 
+std::string calibrated_views_section(const CalibrationSummary& summary) {
+  Rows rows;
+  for (std::size_t v = 0; v < summary.lights.size(); ++v) {
+    const LightSummary& light = summary.lights[v];
+    const PoseSummary pose = v < summary.poses.size() ? summary.poses[v] : PoseSummary{};
+    const bool lamp = v < summary.lamp.factor.size() && v < summary.lamp.factor_sigma.size() && summary.lamp.factor_sigma[v] > 0.0;
+    rows.push_back({light.view, measured(pose.silhouette_px), measured(pose.sigma_m, 1e3), measured(pose.sigma_deg),
+                    std::to_string(pose.tags), pose.dominant, html::number(1e3 * light.sigma_m),
+                    std::to_string(light.highlights), light.from_spheres ? "spheres and arm" : "arm alone",
+                    lamp ? html::number(summary.lamp.factor[v], 5) : "–",
+                    lamp ? html::number(summary.lamp.factor_sigma[v], 2) : "–"});
+  }
+  std::vector<std::string> strays;
+  for (const StrayLightSummary& light : summary.stray_lights) {
+    const Eigen::Vector3d& at = light.position_in_rig;
+    strays.push_back("Stray light at (" + html::number(at.x()) + ", " + html::number(at.y()) + ", " + html::number(at.z()) +
+                     ") m in the rig's frame, sigma " + html::number(1e3 * light.sigma_m) + " mm, on the spheres of " +
+                     std::to_string(light.views.size()) + " views: it is in their photographs too, and on the gray card, so the scale is wrong. Move or cover it.");
+  }
+  const std::string problem =
+      summary.pose_problem.empty() ? "" : " Poses are the rig description's: " + summary.pose_problem;
+  return html::section(
+      "Poses and lights",
+      "How surely it is known where object and lamp stood; pose, light and the last column are one sigma. Silhouette: median distance between "
+      "the mesh's outline and the photograph's. Lamp: output over that at the gray card; a dash where it was taken to be steady." + problem,
+      "<div class=\"scroll\">" +
+          html::table({"view", "silhouette, px", "pose, mm", "pose, °", "tags", "mostly from", "light, mm", "highlights",
+                       "light from", "lamp", "sigma"},
+                      rows) +
+          "</div>" + notes_list(strays));
+}
+
+std::string given_poses_section(const CalibrationSummary& summary) {
+  Rows rows;
+  for (const PoseSummary& pose : summary.poses) {
+    rows.push_back({pose.view, pose.source, measured(pose.given_px), measured(pose.silhouette_px), measured(pose.contradiction, 1.0, 4),
+                    measured(pose.sigma_m, 1e3), measured(pose.sigma_deg), pose.dominant, pose.problem});
+  }
+  std::string text =
+      "Poses were given with the session. One is replaced only if its silhouette contradicts it: by a chi-square with six degrees of "
+      "freedom, at 5 % for all views together. Silhouette: median distance between the mesh's outline and the mask's rim. One sigma "
+      "each. Lights and scale are as given; nothing in the session measures them.";
+  if (!summary.pose_problem.empty()) text += " Nothing was compared: " + summary.pose_problem + ".";
+  if (summary.rim_offset_px) {
+    text += " The masks' rims lie " + measured(summary.rim_offset_px) + " ± " + measured(summary.rim_offset_sigma_px, 1.0, 2) +
+            " px outside of the mesh's outline.";
+  }
+  return html::section("Poses", text,
+                       "<div class=\"scroll\">" +
+                           html::table({"view", "pose", "silhouette as given, px", "silhouette, px", "chi-square of the given", "sigma, mm",
+                                        "sigma, °", "mostly from", ""},
+                                       rows) +
+                           "</div>" + share_bars(summary));
+}
+
 std::string calibration_report(const CalibratedSession& session, const CalibrationSummary& summary,
                                const std::filesystem::path& pictures, const std::string& truth_text,
                                const std::string& data_json) {
   std::string body = "<header><h1>Calibration</h1><p>" + std::to_string(session.views.size()) +
                      " views. Every sigma is one standard deviation; a dash means: not measured.</p></header>";
-  if (!session.views.empty()) body += summary.intensity.empty() ? given_section(summary) : views_section(summary);
+  if (!session.views.empty()) body += summary.intensity.empty() ? given_poses_section(summary) : calibrated_views_section(summary);
   if (!summary.intensity.empty()) body += scale_section(summary);
   if (!summary.lens.params.empty()) body += lens_section(summary, pictures);
   if (summary.sensor.electrons_per_dn > 0) body += sensor_section(summary.sensor, summary.hot_pixels);

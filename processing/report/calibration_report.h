@@ -15,4 +15,9 @@ std::string calibration_report(const CalibratedSession& session, const Calibrati
                                const std::filesystem::path& pictures, const std::string& truth_text,
                                const std::string& data_json);
 
+// Its section about views, as other pages show it: of a captured session, and of an imported one whose poses were given and held against
+// the masks.
+std::string calibrated_views_section(const CalibrationSummary& summary);
+std::string given_poses_section(const CalibrationSummary& summary);
+
 }  // namespace lumitexel

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "processing/calibration/calibration_summary_json.h"
 #include "processing/model/render_view.h"
 #include "processing/report/html.h"
 #include "processing/report/page_style.h"
@@ -21,7 +22,10 @@ Json page_data(const ReportSubject& subject) {
           {"provenance", provenance},
           {"texels_by_material", texels_by_material(subject.model)},
           {"coverage", coverage_json(subject.model)},
+          {"uncertainty_from", doubt_json(subject)},
           {"normals", normals_json(subject.model)},
+          {"exposures", exposures_json(subject.exposures)},
+          {"calibration", subject.calibration != nullptr ? summary_json(*subject.calibration) : Json(nullptr)},
           {"nearest_materials", nearest_json(subject)}};
 }
 
@@ -51,8 +55,11 @@ std::string model_report(const ReportSubject& subject, Progress& progress) {
   body += nearest_section(subject);
   body += normals_section(subject, data.at("normals"), renderer, map_view(subject));
   body += coverage_section(subject.model, renderer, map_view(subject));
+  body += doubt_section(subject, data.at("uncertainty_from"), map_view(subject));
   body += outlier_section(provenance);
   if (subject.session != nullptr) body += setup_section(*subject.session);
+  body += exposure_section(subject.exposures);
+  if (subject.calibration != nullptr) body += calibration_section(*subject.calibration);
   body += timing_section(provenance) + definitions_section();
   return html::page(subject.name + " – Lumitexel report", kPageStyle, body, data.dump(1));
 }

@@ -6,8 +6,10 @@
 
 #include "processing/brdf/nearest_material.h"
 #include "processing/calibration/calibrated_session.h"
+#include "processing/calibration/calibration_summary.h"
 #include "processing/evaluation/evaluate_model.h"
 #include "processing/model/model.h"
+#include "processing/report/photograph_exposure.h"
 #include "rig/progress.h"
 
 namespace lumitexel {
@@ -18,13 +20,15 @@ struct ReportSubject {
   // The photographs to compare with, and what the comparison found; without them the page says what is left out.
   const CalibratedSession* session = nullptr;
   const Evaluation* evaluation = nullptr;
+  const CalibrationSummary* calibration = nullptr;  // what calibration says of poses and lights
+  std::vector<PhotographExposure> exposures{};      // of the session's photographs; the page says nothing of exposures without them
   std::span<const KnownMaterial> known{};  // measured materials to name the nearest of
   std::string known_source{};               // where they are from, "the … database"
 };
 
 // The page. Every number on it is also in its <script type="application/json" id="data">: {"summary": the sentences on top,
 // "stages": the fit's, "evaluation": as `lumitexel evaluate --json` or null, "provenance": the fit's, "texels_by_material": [texels that were fitted to
-// samples], "coverage": of the texels and their sigma, "normals": tilts and sigmas or null, "nearest_materials": [three for each material]}.
+// samples], "coverage": of the texels and their sigma, "uncertainty_from": shares by cause or null, "normals": tilts and sigmas or null, "exposures": a photograph each, "calibration": as `lumitexel calibrate --json` has it or null, "nearest_materials": [three for each material]}.
 std::string report_json(const ReportSubject& subject);
 std::string model_report(const ReportSubject& subject, Progress& progress);
 

@@ -11,8 +11,6 @@ namespace {
 
 constexpr double kSize_px = 480, kMargin_px = 26;
 constexpr const char* kAxisNames = "xyz";
-constexpr const char* kFitColour = "#2a5d9c";
-constexpr const char* kHeldoutColour = "#b4541a";
 
 struct Drawing {
   int horizontal, vertical;

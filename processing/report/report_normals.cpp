@@ -56,17 +56,16 @@ Model bare_form(const Model& model) {
 
 Eigen::Vector3d vector_at(const Image& image, int x, int y) { return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)}; }
 
-// White plaster under a light from the left, 20 degrees above the picture's plane. No shadows are cast.
+// White plaster under a light from the left and half as much from the right, each 20 degrees above the picture's plane. No shadows are cast.
 Image plaster(const Image& normal, const View& view) {
   const Eigen::Matrix3d world_from_camera = view.camera_from_world.inverse().linear();
-  const Eigen::Vector3d towards_light =
-      world_from_camera * Eigen::Vector3d(-std::cos(20.0 * kDegree), 0.0, -std::sin(20.0 * kDegree));
-  constexpr double kAmbient = 0.04;
+  const double aside = std::cos(20.0 * kDegree), ahead = -std::sin(20.0 * kDegree);  // the camera looks along +z
+  const Eigen::Vector3d left = world_from_camera * Eigen::Vector3d(-aside, 0.0, ahead), right = world_from_camera * Eigen::Vector3d(aside, 0.0, ahead);
   Image shown(normal.width, normal.height, 1, 1.0f);
   for (int y = 0; y < shown.height; ++y) {
     for (int x = 0; x < shown.width; ++x) {
       const Eigen::Vector3d n = vector_at(normal, x, y);
-      if (!n.isZero()) shown.at(x, y) = static_cast<float>(kAmbient + (1.0 - kAmbient) * std::max(0.0, n.dot(towards_light)));
+      if (!n.isZero()) shown.at(x, y) = static_cast<float>(std::max(0.0, n.dot(left)) + 0.5 * std::max(0.0, n.dot(right)));
     }
   }
   return tone_mapped(shown, 1.0);
@@ -98,7 +97,7 @@ std::string text_of(const Json& data) {
   return "The mesh that the measurement began with is coarser than the photographs. From how each point brightens and darkens as the lamp moves, "
          "its normal (the direction that the surface faces) was fitted, so that small relief shows that the mesh does not have. Of " +
          count("texels_measured") + " measured texels, " + count("texels_on_the_meshs_normal") +
-         " kept the mesh's normal, to within " + html::number(kUnmovedTilt_rad / kDegree) + "°.";
+         " kept the mesh's normal, to within " + html::number(kUnmovedTilt_rad / kDegree, 1) + "°.";
 }
 
 }  // namespace
@@ -136,16 +135,18 @@ std::string normals_section(const ReportSubject& subject, const Json& data, cons
       "Fine relief: the normals", text_of(data),
       "<div class=\"row two\">" +
           html::figure(html::picture(plaster(before, view), "the mesh's normals under raking light"),
-                       "Before: the mesh's own normals, as white plaster under a raking light from the left. No shadows are cast.") +
+                       "Before: the mesh's own normals, as white plaster under raking light from the left and, half as strong, from the right. No shadows are cast.") +
           html::figure(html::picture(plaster(after, view), "the fitted normals under raking light"),
-                       "After: the fitted normals, the same plaster and light.") +
+                       "After: the fitted normals, the same plaster and lights.") +
           "</div><div class=\"row two\">" +
           figure_with_scale(tilt_picture, "tilt against the mesh", kFullTilt_deg,
                             "How far each normal was turned away from the mesh's: half of the measured texels by at most " +
                                 degrees(tilt.at("median")) + ", nine tenths by at most " + degrees(tilt.at("nine_tenths")) + ".") +
           figure_with_scale(sigma_picture, "sigma of the normals", kFullSigma_deg,
                             "How uncertain the fitted normal is, one sigma per axis: half of the measured texels at most " +
-                                degrees(sigmas.at("median")) + ", nine tenths at most " + degrees(sigmas.at("nine_tenths")) + ".") +
+                                degrees(sigmas.at("median")) + ", nine tenths at most " + degrees(sigmas.at("nine_tenths")) +
+                                ". It follows from the scatter of the samples, the neighbours and the mesh. What the model leaves out, such as a "
+                                "texel sorted to the wrong material, comes on top.") +
           "</div>\n");
 }
 

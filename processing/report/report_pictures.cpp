@@ -4,7 +4,6 @@
 #include "processing/image/tone_map.h"
 #include "processing/report/html.h"
 #include "processing/report/material_pictures.h"
-#include "processing/report/plan_drawing.h"
 #include "processing/report/report_sections.h"
 #include "processing/report/view_pictures.h"
 
@@ -165,16 +164,6 @@ std::string material_section(const ReportSubject& subject, const ViewRenderer& r
                        "material's basis and so varies about this mean. An ideal white surface has albedo 1.",
                        "<div class=\"row\"><div>" + map + "</div><div style=\"grid-column: span 2\">" +
                            sphere_figures(subject.model) + "</div></div>\n");
-}
-
-std::string setup_section(const CalibratedSession& session) {
-  return html::section("Cameras and lights",
-                       "Where the camera (triangles) and the light (circles) stood for each photograph, in the "
-                       "object's frame. Blue: used in "
-                       "the fit. Brown: held out. Point at a mark to read its photograph's name. Directional lights "
-                       "are drawn at the rim.",
-                       "<div class=\"row\">" + html::figure(plan_drawing(session, 0, 1), "Along the world's z axis") +
-                           html::figure(plan_drawing(session, 0, 2), "Along the world's y axis") + "</div>\n");
 }
 
 }  // namespace lumitexel

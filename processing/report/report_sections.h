@@ -35,13 +35,24 @@ std::string definitions_section();
 std::string comparison_section(const ReportSubject& subject, const ViewRenderer& renderer, Progress& progress);
 std::string material_section(const ReportSubject& subject, const ViewRenderer& renderer);
 View map_view(const ReportSubject& subject);  // as the first photograph shown sees the object, filling the picture
+
+// ---- how it was photographed (report_setup.cpp)
 std::string setup_section(const CalibratedSession& session);
+// A list a photograph; null where a session does not know.
+nlohmann::json exposures_json(const std::vector<PhotographExposure>& exposures);
+std::string exposure_section(const std::vector<PhotographExposure>& exposures);  // empty of none
+std::string calibration_section(const CalibrationSummary& summary);
 
 // ---- coverage and uncertainty (report_maps.cpp)
 // {"texels", "texels_measured", "samples_a_texel": {"tenth", "median", "most"}, "relative_sigma": {"median", "nine_tenths"}}, over the texels
 // that were fitted to samples; null where there are none. "texels" have a material, the filled-in margin of the patches included.
 nlohmann::json coverage_json(const Model& model);
 std::string coverage_section(const Model& model, const ViewRenderer& renderer, const View& view);
+
+// ---- what it comes from (report_doubt.cpp)
+// {"points": asked, "shares": {"normal", "no highlight", "few samples", "scatter"}, "by_material": the same a material}; null without a session.
+nlohmann::json doubt_json(const ReportSubject& subject);
+std::string doubt_section(const ReportSubject& subject, const nlohmann::json& doubt, const View& view);
 
 // ---- fitted normals (report_normals.cpp)
 // {"texels_measured", "texels_on_the_meshs_normal", "within_deg", "tilt_against_mesh_deg" and "sigma_deg": {"median", "nine_tenths", "most"}}

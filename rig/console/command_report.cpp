@@ -38,15 +38,20 @@ CommandResult report_command(const ReportSettings& settings, CommandContext& con
   const Model model = model_given("MODEL", settings.model);
   std::optional<CalibratedSession> session;
   std::optional<Evaluation> evaluation;
+  CalibrationSummary calibration;
+  std::vector<PhotographExposure> exposures;
   if (!settings.session.empty()) {
     const SessionStore store = session_given("--session", settings.session);
-    session = calibrate_session(store, context.progress);
+    session = calibrate_session(store, context.progress, &calibration);
     evaluation = evaluate_model(model, *session, context.progress);
+    exposures = photograph_exposures(store, *session, context.progress);
   }
   ReportSubject subject{title_of(settings.model), model};
   if (session) {
     subject.session = &*session;
     subject.evaluation = &*evaluation;
+    subject.calibration = &calibration;
+    subject.exposures = exposures;
   }
   const std::vector<KnownMaterial> known = measured_materials();
   if (model.channels == kMaxChannels) {

@@ -35,6 +35,10 @@ class ModelReport : public testing::Test {
     RadianceImage photograph{Image(32, 32, 3, 0.1f), Image(32, 32, 3), std::vector<std::uint8_t>(32 * 32, 0)};
     write_radiance_image(view.photograph, photograph);
     session_.views.push_back(view);
+    calibration_.poses = {{view.name, "silhouette", 0.00012, 0.034, 0.57, 4, "silhouette"}};
+    calibration_.lights = {{.view = view.name, .sigma_m = 0.00081, .from_spheres = true, .highlights = 5}};
+    calibration_.intensity = {1.0, 2.0, 3.0};
+    exposures_ = {{view.name, true, {0.003, 0.024, 0.192}, 0.0123, 0.456, {0.01, 0.02, 0.04, 0.08, 0.16}}};
   }
 
   std::string page(bool with_session) {
@@ -44,6 +48,8 @@ class ModelReport : public testing::Test {
       evaluation_ = evaluate_model(model_, session_, progress);
       subject.session = &session_;
       subject.evaluation = &evaluation_;
+      subject.calibration = &calibration_;
+      subject.exposures = exposures_;
     }
     return model_report(subject, progress);
   }
@@ -52,6 +58,8 @@ class ModelReport : public testing::Test {
   Model model_;
   CalibratedSession session_;
   Evaluation evaluation_;
+  CalibrationSummary calibration_;
+  std::vector<PhotographExposure> exposures_;
 };
 
 TEST_F(ModelReport, NeedsNothingButItself) {
@@ -62,7 +70,7 @@ TEST_F(ModelReport, NeedsNothingButItself) {
   for (std::size_t at = html.find("src="); at != std::string::npos; at = html.find("src=", at + 1), ++pictures) {
     EXPECT_EQ(html.substr(at, 33), "src=\"data:image/png;base64,iVBORw") << "a PNG's first bytes";
   }
-  EXPECT_EQ(pictures, 9u) << "photograph and rendering on top; photograph, rendering, difference, map, sphere, coverage, uncertainty";
+  EXPECT_EQ(pictures, 10u) << "photograph and rendering on top; photograph, rendering, difference, map, sphere, coverage, uncertainty, its causes";
 }
 
 TEST_F(ModelReport, SaysTheNumbersOfTheFitAndOfTheComparison) {
@@ -163,13 +171,13 @@ std::vector<std::string> numbers_in_tables(const std::string& html) {
   return numbers;
 }
 
-// As the page may write it: by html::number, plain or as percent.
+// As the page may write it: by html::number, plain, as percent, or in thousandths (mm of m).
 void collect_numbers(const nlohmann::json& data, std::set<std::string>& written) {
   if (data.is_structured()) {
     for (const auto& item : data) collect_numbers(item, written);
   } else if (data.is_number()) {
     for (const int digits : {2, 3, 4, 8}) {
-      for (const double unit : {1.0, 100.0}) written.insert(html::number(unit * data.get<double>(), digits));
+      for (const double unit : {1.0, 100.0, 1000.0}) written.insert(html::number(unit * data.get<double>(), digits));
     }
   }
 }
@@ -183,6 +191,35 @@ TEST_F(ModelReport, EveryNumberOfItsTablesIsInItsJson) {
   const std::size_t start = html.find(open) + open.size();
   collect_numbers(nlohmann::json::parse(html.substr(start, html.find("</script>") - start)), written);
   for (const std::string& number : numbers) EXPECT_TRUE(written.count(number)) << number;
+}
+
+TEST_F(ModelReport, SaysHowItWasPhotographedAndWhatItDoesNotKnow) {
+  const std::string bracketed = page(true);
+  EXPECT_THAT(bracketed, HasSubstr("<td>3</td><td>0.00300</td><td>0.192</td><td>6</td><td>1.2 %</td><td>46 %</td>"));
+  EXPECT_THAT(bracketed, HasSubstr("stops below the brightest"));
+  EXPECT_THAT(bracketed, HasSubstr("silhouette, px"));
+  EXPECT_THAT(bracketed, HasSubstr("0.810")) << "a lamp's place in mm";
+
+  exposures_[0].exposure_s.clear();  // imported
+  calibration_.intensity.clear();
+  const std::string imported = page(true);
+  EXPECT_THAT(imported, HasSubstr("knows no exposure times"));
+  EXPECT_THAT(imported, HasSubstr("<td>–</td><td>–</td><td>–</td><td>–</td><td>1.2 %</td><td>–</td>"));
+  EXPECT_THAT(imported, HasSubstr("Poses were given with the session"));
+}
+
+TEST(PhotographExposure, CountsTheObjectsPixelsOnly) {
+  RadianceImage photograph{Image(10, 1, 1), Image(10, 1, 1), std::vector<std::uint8_t>(10, 0)};
+  for (int x = 0; x < 10; ++x) photograph.radiance.at(x, 0) = static_cast<float>(x);
+  photograph.flags[8] = kPixelOutside | kPixelSaturated;
+  photograph.flags[9] = kPixelOutside;
+  photograph.flags[7] = kPixelSaturated;
+  photograph.flags[0] = photograph.flags[1] = kPixelDark;
+  const PhotographExposure exposure = exposure_of(photograph);
+  EXPECT_EQ(exposure.clipped_share, 0.125);
+  EXPECT_EQ(exposure.dark_share, 0.25);
+  EXPECT_EQ(exposure.radiance[2], 3.0) << "of 0 to 6: clipped ones are no values, dark ones are";
+  EXPECT_EQ(exposure_of({Image(1, 1, 1), Image(1, 1, 1), {kPixelOutside}}).clipped_share, 0.0) << "no object, no share of it";
 }
 
 TEST_F(ModelReport, WithoutASessionTheModelAloneIsShown) {
