@@ -19,6 +19,7 @@ struct ReportSubject {
   const CalibratedSession* session = nullptr;
   const Evaluation* evaluation = nullptr;
   std::span<const KnownMaterial> known{};  // measured materials to name the nearest of
+  std::string viewer{};                    // a section with the interactive view (viewer/viewer_section.h); empty: none
 };
 
 // The page. Every number on it is also in its <script type="application/json" id="data">: {"summary": the sentences on top,
