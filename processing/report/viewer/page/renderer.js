@@ -69,17 +69,27 @@ class Renderer {
     const values = {
       triangleMap, nodeMap, nodeCount, basisMap, colourColumn, normalMap, figureMap, weightMap: null, materialMap: null, triangleNumberMap: this.numbers.texture,
       surfaceOffset: 1e-5 * page.diagonal_m, atlasSize: new THREE.Vector2(page.atlas.width, page.atlas.height), clusterRow: 0,
-      firstRow: 0, rowsPerMaterial: 0, rowCount: 0, weighted: false, texelNormals: true, shadows: true, exposure: 1, figureScale: 1, show: 0,
+      firstRow: 0, rowsPerMaterial: 0, rowCount: 0, weighted: false, texelNormals: true, shadows: true, exposure: 1, figureScale: 1,
       skyMap: this.sky.skyMap, aliasMap: this.sky.aliasMap, skySize: [page.sky.width, page.sky.height], skyTurn: 0, sumMap: null, pass: 0, jitter: new THREE.Vector2(),
       eye: new THREE.Vector3(), rightward: new THREE.Vector3(), upward: new THREE.Vector3(), forward: new THREE.Vector3(),
       pictureSize: new THREE.Vector2(), focal: 1, light: new THREE.Vector3(), intensity: new THREE.Vector3(),
     };
     this.uniforms = {};
     for (const [name, value] of Object.entries(values)) this.uniforms[name] = { value };
-    const vertexShader = "void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }";
-    const fragmentShader = "precision highp sampler2DArray;\n" + kToneShader + shaders["brdf.glsl"] + shaders["surface.glsl"] + shaders["shade.glsl"] + shaders["sky.glsl"] + shaders["pixel.glsl"];
-    const material = new THREE.ShaderMaterial({ vertexShader, fragmentShader, uniforms: this.uniforms, depthTest: false, depthWrite: false, blending: THREE.NoBlending });
-    return this.scene(geometry, material);
+    this.materials = {};
+    return this.scene(geometry, this.materialFor("radiance"));
+  }
+
+  // The program that draws one of kShow, made when it is first asked for.
+  materialFor(show) {
+    if (!this.materials[show]) {
+      const defines = { SHOW: kShow[show] }, sky = show === "sky" ? shaders["sky.glsl"] : "";
+      for (const family of kFamilies) defines["HAS_" + family.toUpperCase()] = this.basis.families.includes(family) ? 1 : 0;
+      const vertexShader = "void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }";
+      const fragmentShader = "precision highp sampler2DArray;\n" + kToneShader + shaders["brdf.glsl"] + shaders["surface.glsl"] + shaders["shade.glsl"] + sky + shaders["pixel.glsl"];
+      this.materials[show] = new THREE.ShaderMaterial({ defines, vertexShader, fragmentShader, uniforms: this.uniforms, depthTest: false, depthWrite: false, blending: THREE.NoBlending });
+    }
+    return this.materials[show];
   }
 
   // The mean of the passes so far, as drawn on the screen.
@@ -141,7 +151,7 @@ class Renderer {
   }
 
   draw(show, target = null) {
-    this.uniforms.show.value = kShow[show];
+    this.screen.children[0].material = this.materialFor(show);
     this.gl.setRenderTarget(this.numbers);
     this.gl.setClearColor(0x000000, 0);
     this.gl.clear();
