@@ -31,7 +31,9 @@ SgdBrdf sgd_from_table(std::string_view csv, const std::string& material, const 
 std::vector<std::string> sgd_table_names(std::string_view csv);  // of its rows, in order
 bool sgd_table_has(std::string_view csv, const std::string& material);
 
-// config/materials/merl_sgd_selected.csv as it was when the program was built.
+// config/materials/merl_sgd_selected.csv, which the simulation uses, and merl_sgd.csv, all that the authors published, as they were when
+// the program was built.
 std::string_view selected_sgd_table();
+std::string_view measured_sgd_table();
 
 }  // namespace lumitexel

@@ -51,13 +51,14 @@ json scene_json(const Model& model, const ExportedMaps& maps, const ConversionLo
   const Eigen::Vector3d lamp = view.light.vector_in_world;
   const std::vector<double>& power = view.light.intensity;
   return {{"conversion_loss", loss_json(loss)}, {"vertices", model.mesh.positions.size()}, {"triangles", model.mesh.triangles.size()},
-          {"most_f0", maps.most_f0}, {"own_normals", maps.normal.channels > 0}, {"width_px", view.camera.width_px}, {"height_px", view.camera.height_px},
+          {"most_share", maps.most_share}, {"own_normals", maps.normal.channels > 0}, {"width_px", view.camera.width_px}, {"height_px", view.camera.height_px},
           {"field_of_view_x_rad", 2.0 * std::atan(0.5 * view.camera.width_px / view.camera.focal_x_px)},
           {"world_from_camera", rows}, {"lamp_m", {lamp.x(), lamp.y(), lamp.z()}},
           {"lamp_intensity", {power[0], power[power.size() > 1 ? 1 : 0], power[power.size() > 2 ? 2 : 0]}}};
 }
 
-constexpr const char* kScript = R"PY(# Builds the scene of scene.json. Blender: File, or: blender -b --python scene.py -- OUT.exr
+constexpr const char* kScript = R"PY(# Builds the scene of scene.json (its conversion_loss: what the material loses against the model).
+# Render it and compare it with reference.exr: blender -b --python scene.py -- OUT.exr
 import array, json, math, os, sys
 import bpy
 from mathutils import Matrix
@@ -128,13 +129,14 @@ def build_material():
             link(factor, node.inputs["Scale"])
         return node.outputs["Vector"]
 
-    f0 = scaled(image(nodes, "specular.png", "sRGB"), SCENE["most_f0"])
+    factor = image(nodes, "specular_factor.png", "Non-Color")
+    share = scaled(image(nodes, "specular.png", "sRGB"), SCENE["most_share"])
     parts = nodes.new("ShaderNodeSeparateXYZ")
-    link(f0, parts.inputs[0])
+    link(scaled(share, factor), parts.inputs[0])  # F0
     largest = math_node("MAXIMUM", math_node("MAXIMUM", parts.outputs[0], parts.outputs[1]), parts.outputs[2])
     diffuse, glossy = nodes.new("ShaderNodeBsdfDiffuse"), nodes.new("ShaderNodeBsdfPrincipled")
     link(scaled(image(nodes, "base.png", "sRGB"), math_node("SUBTRACT", 1.0, largest)), diffuse.inputs["Color"])
-    link(f0, glossy.inputs["Base Color"])
+    link(share, glossy.inputs["Base Color"])
     glossy.inputs["Metallic"].default_value = 1.0
     glossy.distribution = "GGX"
     link(image(nodes, "roughness.png", "Non-Color"), glossy.inputs["Roughness"])
@@ -144,9 +146,12 @@ def build_material():
         link(image(nodes, "normal_world.png", "Non-Color"), normal.inputs["Color"])
         for shader in (diffuse, glossy):
             link(normal.outputs["Normal"], shader.inputs["Normal"])
+    highlights = nodes.new("ShaderNodeMixShader")  # by the factor, with nothing: the first shader stays empty
+    link(factor, highlights.inputs["Fac"])
+    link(glossy.outputs[0], highlights.inputs[2])
     both, output = nodes.new("ShaderNodeAddShader"), nodes.new("ShaderNodeOutputMaterial")
     link(diffuse.outputs[0], both.inputs[0])
-    link(glossy.outputs[0], both.inputs[1])
+    link(highlights.outputs[0], both.inputs[1])
     link(both.outputs[0], output.inputs["Surface"])
     return material
 
@@ -202,11 +207,28 @@ def set_render(scene):
     settings.file_format, settings.color_mode, settings.color_depth, settings.exr_codec = "OPEN_EXR", "RGB", "32", "ZIP"
 
 
+def pixels(path):
+    loaded = bpy.data.images.load(path)
+    values = array.array("f", bytes(4 * len(loaded.pixels)))
+    loaded.pixels.foreach_get(values)
+    return values
+
+
+def compare(rendered, reference):
+    """PSNR over the pixels that the reference lights, its 99.9th percentile being the peak."""
+    ours, theirs = pixels(reference), pixels(rendered)
+    lit = [p + c for p in range(0, len(ours), 4) if sum(ours[p:p + 3]) > 0.0 for c in range(3)]
+    peak = sorted(ours[i] for i in lit)[math.ceil(0.999 * len(lit)) - 1]
+    squares = sum((ours[i] - theirs[i]) ** 2 for i in lit) / len(lit)
+    print("PSNR against reference.exr: %.1f dB" % (10.0 * math.log10(peak * peak / squares)))
+
+
 scene = build_scene()
 set_render(scene)
 if "--" in sys.argv:
     scene.render.filepath = os.path.abspath(sys.argv[sys.argv.index("--") + 1])
     bpy.ops.render.render(write_still=True)
+    compare(scene.render.filepath, os.path.join(HERE, "reference.exr"))
 )PY";
 
 }  // namespace
@@ -217,13 +239,12 @@ void write_blender_scene(const std::filesystem::path& directory, const Model& mo
   write_png8(directory / "base.png", maps.base);
   write_png8(directory / "specular.png", maps.specular);
   write_png8(directory / "roughness.png", maps.roughness);
+  write_png8(directory / "specular_factor.png", maps.specular_factor);
   if (maps.normal.channels > 0) write_png8(directory / "normal_world.png", coded_normals(atlas.normals.world));
   write_whole_file(directory / "mesh.bin", mesh_bytes(model.mesh));
   write_whole_file(directory / "scene.json", scene_json(model, maps, loss, view).dump(1) + "\n");
   write_whole_file(directory / "scene.py", kScript);
-  RenderOptions options;
-  options.samples_per_pixel = 16;
-  write_exr_colour(directory / "reference.exr", ViewRenderer(model).render(view, options).radiance);
+  write_reference(directory / "reference.exr", model, view);
 }
 
 }  // namespace lumitexel

@@ -2,7 +2,10 @@
 
 #include <tbb/parallel_for.h>
 
+#include <cmath>
+
 #include "processing/export/tangent_frame.h"
+#include "processing/image/exr_file.h"
 
 namespace lumitexel {
 namespace {
@@ -21,16 +24,21 @@ Model textured_shell(const Model& model) {
 
 GltfMaterial filtered(const ExportedMaps& maps, const TexturedPoint& point) {
   GltfMaterial sum;
-  sum.roughness = 0.0;
+  sum.roughness = sum.specular = 0.0;
   for (int i = 0; i < point.texel_count; ++i) {
     const TexelShare& share = point.texels[static_cast<std::size_t>(i)];
     const GltfMaterial texel = decoded_texel(maps, share.x, share.y);
-    sum.roughness += share.weight * texel.roughness;
+    const std::array<double, 3> colour = decoded_highlight_share(maps, share.x, share.y);
+    // Mitsuba's texture holds alpha, roughness^2.
+    sum.roughness += share.weight * (maps.form == MaterialForm::Mitsuba ? texel.roughness * texel.roughness : texel.roughness);
+    sum.specular += share.weight * texel.specular;
     for (std::size_t c = 0; c < 3; ++c) {
       sum.base[c] += share.weight * texel.base[c];
-      sum.f0[c] += share.weight * texel.f0[c];
+      sum.f0[c] += share.weight * colour[c];
     }
   }
+  if (maps.form == MaterialForm::Mitsuba) sum.roughness = std::sqrt(sum.roughness);
+  for (double& f0 : sum.f0) f0 *= sum.specular;  // each texture is filtered, then they meet
   return sum;
 }
 
@@ -43,7 +51,9 @@ Eigen::Vector3d shading_normal(const ExportedMaps& maps, const Mesh& mesh, const
     const TexelShare& share = point.texels[static_cast<std::size_t>(i)];
     sum += share.weight * decoded_normal(maps.normal, share.x, share.y);
   }
-  return (tangent_frame(mesh, tangents, point.triangle, point.u, point.v) * sum).normalized();
+  const Eigen::Matrix3d frame = maps.form == MaterialForm::Gltf ? tangent_frame(mesh, tangents, point.triangle, point.u, point.v)
+                                                                : triangle_frame(mesh, point.triangle, point.u, point.v);
+  return (frame * sum).normalized();
 }
 
 }  // namespace
@@ -62,7 +72,9 @@ Image render_exported(const Model& model, const ExportedMaps& maps, const View& 
       const Eigen::Vector3d at = point->position_in_world;
       const LobeGeometry geometry = lobe_geometry(shading_normal(maps, model.mesh, tangents, *point), view.light.direction_from(at), (eye - at).normalized());
       if (geometry.cos_i <= 0.0) continue;
-      const ChannelValues f = evaluate(filtered(maps, *point), geometry);
+      // Mitsuba's normalmap gives no light where the mesh's own normal turns away from it.
+      if (maps.form == MaterialForm::Mitsuba && point->vertex_normal.dot(view.light.direction_from(at)) <= 0.0) continue;
+      const ChannelValues f = evaluate(maps.form, filtered(maps, *point), geometry);
       for (int c = 0; c < model.channels; ++c) {
         radiance.at(x, y, c) =
             static_cast<float>(f[static_cast<std::size_t>(c)] * geometry.cos_i * view.light.irradiance(at, c));
@@ -107,6 +119,12 @@ ConversionLoss conversion_loss(const Model& model, const ExportedMaps& maps, Pro
   }
   loss.error = sums.error();
   return loss;
+}
+
+void write_reference(const std::filesystem::path& path, const Model& model, const View& view) {
+  RenderOptions options;
+  options.samples_per_pixel = 16;
+  write_exr_colour(path, ViewRenderer(model).render(view, options).radiance);
 }
 
 }  // namespace lumitexel

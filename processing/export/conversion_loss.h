@@ -3,8 +3,10 @@
 // evaluated from the textures as written, filtered bilinearly, in the mesh's tangent frames.
 #pragma once
 
+#include <filesystem>
+
 #include "processing/export/exported_maps.h"
-#include "processing/model/image_error.h"
+#include "processing/evaluation/image_error.h"
 #include "processing/model/render_view.h"
 
 namespace lumitexel {
@@ -19,5 +21,7 @@ struct ConversionLoss {
 ConversionLoss conversion_loss(const Model& model, const ExportedMaps& maps, Progress& progress);
 // The views compared, for looking at them.
 std::vector<View> conversion_views(const Mesh& mesh, int channels);
+// The model's own rendering of one, antialiased, as EXR: what another program's picture of the export is to be compared with. Throws Error.
+void write_reference(const std::filesystem::path& path, const Model& model, const View& view);
 
 }  // namespace lumitexel

@@ -13,12 +13,13 @@ enum class ExportFormat {
   Maps,  // map_files.h
   Blender,  // blender_scene.h
   Materialx,  // materialx_file.h
+  Mitsuba,  // mitsuba_scene.h
 };
-ExportFormat export_format_from_string(const std::string& name);  // "gltf", "maps", "blender", "materialx"; throws BadInput
+ExportFormat export_format_from_string(const std::string& name);  // "gltf", "maps", "blender", "materialx", "mitsuba"; throws BadInput
 // The file that another program opens first.
 const char* main_file(ExportFormat format);
 
-// Writes into `directory`, which is made; throws BadInput if it exists and is not empty, if the model's mesh has no texture coordinates or
+// Writes into `directory`, which is made; throws BadInput if it exists and is not empty or cannot be made, if the model's mesh has no texture coordinates or
 // if it has neither one nor three channels. Returns what the conversion loses.
 ConversionLoss export_model(const Model& model, ExportFormat format, const std::filesystem::path& directory, Progress& progress);
 

@@ -30,7 +30,7 @@ std::vector<std::uint8_t> flags(const std::vector<T>& values, T none) {
 
 }  // namespace
 
-ExportedNormals export_normals(const Model& model) {
+ExportedNormals export_normals(const Model& model, MaterialForm form) {
   const std::vector<Eigen::Vector4d> tangents = vertex_tangents(model.mesh);
   const std::vector<std::int32_t> triangles = triangle_of_texel(model);
   const auto by_triangle = nearest_known_texel(model.width, model.height, flags(triangles, kNoTriangle));
@@ -50,7 +50,8 @@ ExportedNormals export_normals(const Model& model) {
     const int x = static_cast<int>(t % static_cast<std::size_t>(model.width)), y = static_cast<int>(t / static_cast<std::size_t>(model.width));
     const auto face = static_cast<std::uint32_t>(triangle);
     const Eigen::Vector2d at = on_triangle(texel_barycentric(model, x, y, face));
-    const Eigen::Matrix3d frame = tangent_frame(model.mesh, tangents, face, at.x(), at.y());
+    const Eigen::Matrix3d frame = form == MaterialForm::Gltf ? tangent_frame(model.mesh, tangents, face, at.x(), at.y())
+                                                             : triangle_frame(model.mesh, face, at.x(), at.y());
     store(normals.world, t, own.isZero() ? frame.col(2) : own.normalized());
     const Eigen::Vector3d in_texture = own.isZero() ? Eigen::Vector3d::UnitZ() : in_frame(frame, own.normalized());
     store(normals.tangent, t, in_texture);

@@ -1,6 +1,7 @@
-// A model's normals as other programs take them: for every texel, in world and in the mesh's tangent frame (tangent_frame.h).
+// A model's normals as other programs take them: for every texel, in world and in the frame of the form (tangent_frame.h).
 #pragma once
 
+#include "processing/export/material_form.h"
 #include "processing/model/model.h"
 
 namespace lumitexel {
@@ -13,7 +14,7 @@ struct ExportedNormals {
 };
 
 // The mesh needs texture coordinates.
-ExportedNormals export_normals(const Model& model);
+ExportedNormals export_normals(const Model& model, MaterialForm form = MaterialForm::Gltf);
 
 // Below this tilt 8 bits do not tell a normal from the mesh's: half a step in each of two components, sqrt(2) / 255.
 inline constexpr double kLeastStatedTilt_rad = 0.0056;

@@ -81,13 +81,26 @@ json primitive_of(const Mesh& mesh, bool with_tangents, BufferWriter& buffer) {
 }
 
 json material_of(const ExportedMaps& maps) {
-  const double factor = maps.most_f0 / kDielectricF0;
-  json material = {{"pbrMetallicRoughness",
-           {{"baseColorTexture", {{"index", 0}}}, {"metallicRoughnessTexture", {{"index", 2}}}, {"metallicFactor", 0.0}}},
-          {"extensions",
-           {{"KHR_materials_specular", {{"specularColorFactor", {factor, factor, factor}}, {"specularColorTexture", {{"index", 1}}}}}}}};
+  const double factor = maps.most_share / kDielectricF0;
+  const json texture = {{"index", 1}};  // the colour in its RGB, the factor in its alpha
+  json material = {
+      {"pbrMetallicRoughness",
+       {{"baseColorTexture", {{"index", 0}}}, {"metallicRoughnessTexture", {{"index", 2}}}, {"metallicFactor", 0.0}}},
+      {"extensions",
+       {{"KHR_materials_specular",
+         {{"specularColorFactor", {factor, factor, factor}}, {"specularColorTexture", texture}, {"specularTexture", texture}}}}}};
   if (maps.normal.channels > 0) material["normalTexture"] = {{"index", 3}};
   return material;
+}
+
+// Colour, and the factor in alpha, where the extension looks for it.
+Image specular_with_factor(const ExportedMaps& maps) {
+  Image packed(maps.specular.width, maps.specular.height, 4);
+  for (std::size_t t = 0; t < maps.specular_factor.data.size(); ++t) {
+    std::copy_n(&maps.specular.data[3 * t], 3, &packed.data[4 * t]);
+    packed.data[4 * t + 3] = maps.specular_factor.data[t];
+  }
+  return packed;
 }
 
 // Green is roughness, blue metalness: none.
@@ -101,7 +114,7 @@ Image metallic_roughness(const Image& roughness) {
 
 void write_gltf(const std::filesystem::path& directory, const Mesh& mesh, const ExportedMaps& maps, const ConversionLoss& loss) {
   write_png8(directory / "base.png", maps.base);
-  write_png8(directory / "specular.png", maps.specular);
+  write_png8(directory / "specular.png", specular_with_factor(maps));
   write_png8(directory / "metallic_roughness.png", metallic_roughness(maps.roughness));
   BufferWriter buffer;
   const bool with_normals = maps.normal.channels > 0;

@@ -22,9 +22,9 @@ ChannelValues evaluate(const GltfMaterial& material, const LobeGeometry& geometr
   if (geometry.cos_i <= 0.0 || geometry.cos_o <= 0.0) return values;
   const GltfFacets facets = gltf_facets(material.roughness, geometry);
   const double largest = *std::max_element(material.f0.begin(), material.f0.end());
-  const double diffuse = (1.0 - largest) * (1.0 - facets.fall) / std::numbers::pi;
+  const double diffuse = (1.0 - largest - (material.specular - largest) * facets.fall) / std::numbers::pi;
   for (std::size_t c = 0; c < 3; ++c) {
-    const double fresnel = material.f0[c] + (1.0 - material.f0[c]) * facets.fall;
+    const double fresnel = material.f0[c] + (material.specular - material.f0[c]) * facets.fall;
     values[c] = material.base[c] * diffuse + fresnel * facets.value;
   }
   return values;

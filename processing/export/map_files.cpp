@@ -44,6 +44,8 @@ class MapWriter {
     for (float& value : coded.data) value = value / 255.0f;  // 65535, and what 8 bits do not hold, clips to 255
     add(text, clusters, coded, {"none: indices", "none: indices", 255.0, 0.0}, ExrPixel::Uint);
   }
+  // Whose numbers the next maps hold.
+  void come_from(const char* origin) { origin_ = origin; }
   const json& entries() const { return entries_; }
 
  private:
@@ -55,25 +57,28 @@ class MapWriter {
     const std::string exr = std::string(text.name) + ".exr", png = std::string(text.name) + ".png";
     write_exr_colour(directory_ / exr, values, stored);
     write_png8(directory_ / png, coded);
-    entries_.push_back({{"name", text.name}, {"exr", exr}, {"png", png}, {"channels", values.channels}, {"what", text.what}, {"unit", text.unit},
+    entries_.push_back({{"name", text.name}, {"of", origin_}, {"exr", exr}, {"png", png}, {"channels", values.channels}, {"what", text.what}, {"unit", text.unit},
                         {"exr_colour_space", coding.exr_space}, {"png_colour_space", coding.png_space},
                         {"png_full_scale", coding.full_scale}, {"png_zero", coding.zero}});
   }
   std::filesystem::path directory_;
+  const char* origin_ = "";
   json entries_ = json::array();
 };
 
 void add_material(MapWriter& writer, const RefittedAtlas& atlas) {
-  Image base(atlas.width, atlas.height, 3), specular = base, roughness(atlas.width, atlas.height, 1);
+  Image base(atlas.width, atlas.height, 3), specular = base, roughness(atlas.width, atlas.height, 1), factor = roughness;
   for (std::size_t t = 0; t < atlas.texels.size(); ++t) {
     for (std::size_t c = 0; c < 3; ++c) {
       base.data[3 * t + c] = static_cast<float>(atlas.texels[t].base[c]);
       specular.data[3 * t + c] = static_cast<float>(atlas.texels[t].f0[c]);
     }
+    factor.data[t] = static_cast<float>(atlas.texels[t].specular);
     roughness.data[t] = static_cast<float>(atlas.texels[t].roughness);
   }
   writer.add_colour({"base", "base colour of the diffuse light: its albedo is base * (1 - largest F)", "reflectance, 1"}, base);
-  writer.add_colour({"specular", "F0: the microfacets' reflectance seen and lit along the normal, Fresnel by Schlick", "reflectance, 1"}, specular);
+  writer.add_colour({"specular", "F0: the microfacets' reflectance seen and lit along the normal, Fresnel by Schlick up to specular_factor", "reflectance, 1"}, specular);
+  writer.add_numbers({"specular_factor", "what F becomes at grazing angles, at least specular", "1"}, factor, 1.0);
   writer.add_numbers({"roughness", "roughness r of glTF: GGX with alpha = r^2", "1"}, roughness, 1.0);
   writer.add_numbers({"metallic", "metalness of glTF: none, coloured and strong highlights stand in specular", "1"},
                      Image(atlas.width, atlas.height, 1), 1.0);
@@ -112,7 +117,9 @@ void add_measured(MapWriter& writer, const Model& model) {
 
 void write_map_files(const std::filesystem::path& directory, const Model& model, const RefittedAtlas& atlas, const ConversionLoss& loss) {
   MapWriter writer(directory);
+  writer.come_from("the refitted material");
   add_material(writer, atlas);
+  writer.come_from("the model: EXR without loss");
   writer.add_vectors({"normal_world", "shading normal in the mesh's own axes; the mesh's where the texel has none of its own", "unit vector"},
                      atlas.normals.world);
   writer.add_vectors({"normal_tangent",
@@ -123,7 +130,8 @@ void write_map_files(const std::filesystem::path& directory, const Model& model,
   write_ply(directory / "mesh.ply", model.mesh);
   const json document = {{"width", model.width}, {"height", model.height}, {"rows", "top first"},
                          {"texel_centre", "u = (x + 0.5) / width, v = 1 - (y + 0.5) / height"}, {"mesh", "mesh.ply"}, {"length_unit", "metre"},
-                         {"conversion_loss", loss_json(loss)}, {"maps", writer.entries()}};
+                         {"conversion_loss", loss_json(loss)},
+                         {"conversion_loss_of", "the refitted material and normals as PNG, against the model's own rendering"}, {"maps", writer.entries()}};
   write_whole_file(directory / "maps.json", document.dump(1) + "\n");
 }
 

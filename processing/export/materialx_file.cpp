@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "processing/export/loss_json.h"
+#include "processing/export/obj_file.h"
 #include "processing/image/raster_file.h"
 #include "rig/whole_file.h"
 
@@ -28,14 +29,16 @@ std::string graph(const ExportedMaps& maps) {
   std::ostringstream xml;
   xml << std::setprecision(9) << "  <nodegraph name=\"textures\">\n" << image_node("base", "color3", "base.png", "srgb_texture")
       << image_node("specular_share", "color3", "specular.png", "srgb_texture") << image_node("roughness", "float", "roughness.png", "")
+      << image_node("specular_factor", "float", "specular_factor.png", "")
       << "    <multiply name=\"specular\" type=\"color3\">\n      <input name=\"in1\" type=\"color3\" nodename=\"specular_share\"/>\n"
-      << "      <input name=\"in2\" type=\"float\" value=\"" << maps.most_f0 / kDielectricF0 << "\"/>\n    </multiply>\n";
+      << "      <input name=\"in2\" type=\"float\" value=\"" << maps.most_share / kDielectricF0 << "\"/>\n    </multiply>\n";
   if (maps.normal.channels > 0) {
     xml << image_node("coded_normal", "vector3", "normal.png", "")
         << "    <normalmap name=\"normal\" type=\"vector3\">\n      <input name=\"in\" type=\"vector3\" nodename=\"coded_normal\"/>\n    </normalmap>\n"
         << output("normal", "vector3");
   }
-  xml << output("base", "color3") << output("specular", "color3") << output("roughness", "float") << "  </nodegraph>\n";
+  xml << output("base", "color3") << output("specular", "color3") << output("roughness", "float")
+      << output("specular_factor", "float") << "  </nodegraph>\n";
   return xml.str();
 }
 
@@ -48,25 +51,11 @@ std::string document(const ExportedMaps& maps, const ConversionLoss& loss) {
   std::string xml = "<?xml version=\"1.0\"?>\n<materialx version=\"1.38\" colorspace=\"lin_rec709\">\n" + graph(maps) +
                     "  <gltf_pbr name=\"refitted\" type=\"surfaceshader\" conversion_loss='" + loss_json(loss).dump() + "'>\n" +
                     input("base_color", "color3", "base") + input("specular_color", "color3", "specular") +
-                    input("roughness", "float", "roughness") + "    <input name=\"metallic\" type=\"float\" value=\"0\"/>\n";
+                    input("specular", "float", "specular_factor") + input("roughness", "float", "roughness") +
+                    "    <input name=\"metallic\" type=\"float\" value=\"0\"/>\n";
   if (maps.normal.channels > 0) xml += input("normal", "vector3", "normal");
   return xml + "  </gltf_pbr>\n  <surfacematerial name=\"model\" type=\"material\">\n" +
          "    <input name=\"surfaceshader\" type=\"surfaceshader\" nodename=\"refitted\"/>\n  </surfacematerial>\n</materialx>\n";
-}
-
-// Positions, texture coordinates and normals share their numbers, which OBJ counts from 1.
-std::string obj_text(const Mesh& mesh) {
-  std::ostringstream obj;
-  obj << std::setprecision(9);
-  for (const Eigen::Vector3d& p : mesh.positions) obj << "v " << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
-  for (const Eigen::Vector2d& uv : mesh.texcoords) obj << "vt " << uv.x() << ' ' << uv.y() << '\n';
-  for (const Eigen::Vector3d& n : mesh.normals) obj << "vn " << n.x() << ' ' << n.y() << ' ' << n.z() << '\n';
-  for (const auto& triangle : mesh.triangles) {
-    obj << 'f';
-    for (const std::uint32_t vertex : triangle) obj << ' ' << vertex + 1 << '/' << vertex + 1 << '/' << vertex + 1;
-    obj << '\n';
-  }
-  return obj.str();
 }
 
 }  // namespace
@@ -75,8 +64,9 @@ void write_materialx(const std::filesystem::path& directory, const Mesh& mesh, c
   write_png8(directory / "base.png", maps.base);
   write_png8(directory / "specular.png", maps.specular);
   write_png8(directory / "roughness.png", maps.roughness);
+  write_png8(directory / "specular_factor.png", maps.specular_factor);
   if (maps.normal.channels > 0) write_png8(directory / "normal.png", maps.normal);
-  write_whole_file(directory / "mesh.obj", obj_text(mesh));
+  write_obj(directory / "mesh.obj", mesh);
   write_whole_file(directory / "model.mtlx", document(maps, loss));
 }
 

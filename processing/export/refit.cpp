@@ -14,10 +14,10 @@ constexpr int kTilts = 36, kTurns = 6;
 constexpr double kLeastTilt = 2e-3, kTiltRatio = 1.215;  // up to 1.85 rad; what leaves the hemisphere is dropped
 constexpr double kMostF0 = 0.98;                         // leaves diffuse light something to be divided by
 
-struct Direction {
-  LobeGeometry geometry;
-  double weight = 0;  // solid angle of wi times the share of a sphere's picture that is seen at this angle
-};
+// How far F rises from F0 towards 1 at grazing angles: not at all, or as Schlick has it.
+constexpr double kRises[] = {0.0, 1.0};
+
+using Direction = MaterialRefit::Direction;
 
 std::vector<Direction> sampled_directions() {
   std::vector<Direction> directions;
@@ -65,38 +65,46 @@ Pair bounded_minimum(double dd, double ds, double ss, double d, double s) {
 
 }  // namespace
 
-MaterialRefit::MaterialRefit(const std::vector<Brdf>& basis) {
+MaterialRefit::MaterialRefit(const std::vector<Brdf>& basis, MaterialForm form) : form_(form) {
   const std::vector<Direction> directions = sampled_directions();
-  std::vector<std::vector<std::array<double, 3>>> values(basis.size());
+  std::vector<BasisValues> values(basis.size());
   for (const Direction& direction : directions) {
     for (std::size_t k = 0; k < basis.size(); ++k) values[k].push_back(three_channels(basis[k], direction.geometry));
   }
-  for (int i = 0; i < kRoughnesses; ++i) {
-    Table table;
-    table.roughness = (i + 1.0) / kRoughnesses;
-    table.with_basis.resize(basis.size());
-    table.offset_basis.resize(basis.size());
-    for (std::size_t n = 0; n < directions.size(); ++n) {
-      const GltfFacets facets = gltf_facets(table.roughness, directions[n].geometry);
-      const double diffuse = 1.0 - facets.fall, specular = facets.value * (1.0 - facets.fall);
-      const double offset = facets.value * facets.fall, cos_i = directions[n].geometry.cos_i;
-      const double weight = directions[n].weight * cos_i * cos_i;
-      table.dd += weight * diffuse * diffuse;
-      table.ds += weight * diffuse * specular;
-      table.ss += weight * specular * specular;
-      table.d_offset += weight * diffuse * offset;
-      table.s_offset += weight * specular * offset;
-      table.offset_offset += weight * offset * offset;
-      for (std::size_t k = 0; k < basis.size(); ++k) {
-        for (std::size_t c = 0; c < 3; ++c) {
-          table.with_basis[k][c].diffuse += weight * diffuse * values[k][n][c];
-          table.with_basis[k][c].specular += weight * specular * values[k][n][c];
-          table.offset_basis[k][c] += weight * offset * values[k][n][c];
-        }
+  for (const double rise : kRises) {
+    if (rise > 0.0 && form == MaterialForm::Mitsuba) continue;
+    for (int i = 0; i < kRoughnesses; ++i) tables_.push_back(table_of((i + 1.0) / kRoughnesses, rise, directions, values));
+  }
+}
+
+MaterialRefit::Table MaterialRefit::table_of(double roughness, double rise, const std::vector<Direction>& directions,
+                                             const std::vector<BasisValues>& values) const {
+  Table table;
+  table.roughness = roughness;
+  table.rise = rise;
+  table.with_basis.resize(values.size());
+  table.offset_basis.resize(values.size());
+  for (std::size_t n = 0; n < directions.size(); ++n) {
+    const GltfFacets highlight = facets(form_, roughness, directions[n].geometry);
+    const double fall = rise * highlight.fall;
+    const double diffuse = 1.0 - fall, specular = highlight.value * (1.0 - fall);
+    const double offset = highlight.value * fall, cos_i = directions[n].geometry.cos_i;
+    const double weight = directions[n].weight * cos_i * cos_i;
+    table.dd += weight * diffuse * diffuse;
+    table.ds += weight * diffuse * specular;
+    table.ss += weight * specular * specular;
+    table.d_offset += weight * diffuse * offset;
+    table.s_offset += weight * specular * offset;
+    table.offset_offset += weight * offset * offset;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        table.with_basis[k][c].diffuse += weight * diffuse * values[k][n][c];
+        table.with_basis[k][c].specular += weight * specular * values[k][n][c];
+        table.offset_basis[k][c] += weight * offset * values[k][n][c];
       }
     }
-    tables_.push_back(std::move(table));
   }
+  return table;
 }
 
 GltfMaterial MaterialRefit::fit(std::span<const float> weights) const {
@@ -118,8 +126,9 @@ GltfMaterial MaterialRefit::fit(std::span<const float> weights) const {
     }
     if (!(misfit < least)) continue;
     least = misfit;
-    best.roughness = table.roughness;
     const double largest = std::max({found[0].specular, found[1].specular, found[2].specular});
+    best.roughness = table.roughness;
+    best.specular = largest + table.rise * (1.0 - largest);
     for (std::size_t c = 0; c < 3; ++c) {
       best.f0[c] = found[c].specular;
       best.base[c] = std::clamp(std::numbers::pi * found[c].diffuse / (1.0 - largest), 0.0, 1.0);

@@ -21,6 +21,10 @@ std::vector<Eigen::Vector4d> vertex_tangents(const Mesh& mesh);
 // Columns tangent, bitangent, normal, in world, at the triangle's barycentric weights u, v of its second and third corner.
 Eigen::Matrix3d tangent_frame(const Mesh& mesh, const std::vector<Eigen::Vector4d>& tangents, std::uint32_t triangle, double u, double v);
 
+// The frame that Mitsuba 3 shades in: the interpolated normal, the triangle's own direction of growing u in its plane, and
+// cross(normal, that), whatever the handedness. Any such frame for a triangle without area in the texture.
+Eigen::Matrix3d triangle_frame(const Mesh& mesh, std::uint32_t triangle, double u, double v);
+
 // A world normal in a frame, unit; one that looks below the frame's horizon is laid on it: a texture holds no others.
 Eigen::Vector3d in_frame(const Eigen::Matrix3d& frame, const Eigen::Vector3d& normal_in_world);
 

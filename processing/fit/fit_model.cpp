@@ -4,6 +4,7 @@
 
 #include "drivers/error.h"
 #include "processing/fit/fill_atlas.h"
+#include "processing/fit/interreflection_stage.h"
 #include "processing/fit/normal_stage.h"
 #include "processing/fit/observe.h"
 #include "processing/fit/provenance.h"
@@ -62,28 +63,69 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
   const ErrorModel error = error_model(observations, options);
   summary.error = error;
   const FitInputs inputs{atlas, gathered.set, observations, options, error};
-  Reflectance reflectance = fit_reflectance(inputs, "", model, summary, timer, progress);
+  Reflectance reflectance;
   const auto error_at = [&](FitStage stage) {
     return stage_error(model, stage, observations, reflectance.clustering.label, reflectance.weights);
   };
-  summary.single = error_at(FitStage::Single);
-  summary.cluster = error_at(FitStage::Cluster);
-  summary.projection = error_at(FitStage::Projection);
-  if (options.principal_functions) {
-    seek_principal_functions(inputs, reflectance, model, summary, timer, progress);
-    summary.pfa = error_at(FitStage::Pfa);
+  const auto fill = [&] {
+    fill_atlas(atlas, gathered.set, reflectance.clustering.label, reflectance.weights, reflectance.projection, model);
+  };
+  const auto fit_on_mesh_normals = [&](const std::string& pass) {
+    reflectance = fit_reflectance(inputs, pass, model, summary, timer, progress);
+    summary.single = error_at(FitStage::Single);
+    summary.cluster = error_at(FitStage::Cluster);
+    summary.projection = error_at(FitStage::Projection);
+    if (options.principal_functions) {
+      seek_principal_functions(inputs, reflectance, model, summary, timer, progress);
+      summary.pfa = error_at(FitStage::Pfa);
+    }
+    fill();
+  };
+  // The one BRDF for everything stays that of the mesh's normals: it is the stage before all others.
+  const auto fit_on_fitted_normals = [&](const std::string& pass) {
+    const Brdf single = model.single;
+    reflectance = fit_reflectance(inputs, pass, model, summary, timer, progress);
+    model.single = single;
+    summary.normal = error_at(FitStage::Normal);
+    fill();
+  };
+  const auto fit_again = [&](const std::string& pass) { has_normals(model) ? fit_on_fitted_normals(pass) : fit_on_mesh_normals(pass); };
+  fit_on_mesh_normals("");
+
+  const auto take_out = [&](IndirectRemoval& removal, FitStage stage) {
+    progress.begin("light between surfaces", 1, "rounds");
+    const bool worth_it = removal.remove(model, stage);
+    progress.update(1);
+    if (worth_it) model.indirect_bounces = options.interreflections.light.bounces;
+    return worth_it;
+  };
+  std::optional<IndirectRemoval> indirect;
+  bool changed = false;
+  if (options.interreflections.wanted) {
+    timer.begin("light between surfaces");
+    indirect.emplace(session, gathered.set, scene, model, options.interreflections);
+    if (indirect->can_matter()) changed = take_out(*indirect, last_stage(model));
+    if (changed) observations = observe(session, gathered.set);
   }
-  fill_atlas(atlas, gathered.set, reflectance.clustering.label, reflectance.weights, reflectance.projection, model);
   if (auto normals = seek_normals(session, inputs, reflectance.clustering.label, model, summary, timer, progress)) {
     turn(normals->normal, gathered.set);
     observations = observe(session, gathered.set);
     keep_before_normals(model, summary);
-    const Brdf single = model.single;
-    reflectance = fit_reflectance(inputs, " on fitted normals", model, summary, timer, progress);
-    model.single = single;
-    summary.normal = error_at(FitStage::Normal);
-    fill_atlas(atlas, gathered.set, reflectance.clustering.label, reflectance.weights, {}, model);
     set_normal_sigma(gathered.set, normals->sigma_rad, options.normal_fit.prior.coarse_sigma_rad, model);
+    fit_again(" on fitted normals");
+  } else if (changed) {
+    fit_again(" without light between surfaces");
+  }
+  for (int round = 2; changed && round <= options.interreflections.rounds; ++round) {
+    timer.begin("light between surfaces, round " + std::to_string(round));
+    changed = take_out(*indirect, last_stage(model));
+    if (!changed) break;
+    observations = observe(session, gathered.set);
+    fit_again(", round " + std::to_string(round));
+  }
+  if (indirect) {
+    summary.indirect = indirect->summary();
+    model.indirect = indirect->map(model.width, model.height);
   }
 
   timer.begin("model");

@@ -1,36 +1,12 @@
 // The whole chain of processing, from a calibrated session to a model.
 #pragma once
 
-#include <optional>
-#include <vector>
-
 #include "processing/calibration/calibrated_session.h"
-#include "processing/fit/fit_options.h"
+#include "processing/fit/fit_summary.h"
 #include "processing/model/model.h"
-#include "processing/fit/outliers.h"
-#include "processing/fit/stage_errors.h"
-#include "processing/fit/stage_timer.h"
-#include "processing/normals/normals_worth.h"
-#include "processing/surface/lumitexel.h"
 #include "rig/progress.h"
 
 namespace lumitexel {
-
-struct FitSummary {
-  std::size_t lumitexels = 0, samples = 0, unseen_triangles = 0, starved = 0;  // starved: lumitexels without samples
-  RejectionCounts rejected;
-  RejectedSamples unusable;          // gathered, but not finite or below the surface
-  ErrorModel error;                  // that the fit started from, or was given
-  ErrorSource errors = ErrorSource::Given;  // whose error models the materials have, never Auto
-  std::vector<std::size_t> texels_by_material, texels_before_normals;  // the second only where normals were fitted
-  std::vector<PriorChoice> prior;    // per material, of the last stage
-  StageError single, cluster, projection;
-  std::optional<StageError> pfa;     // if principal functions were asked for
-  std::optional<StageError> normal;  // if normals were fitted
-  std::optional<NormalsWorth> normals_worth;  // if left-out photographs were asked
-  Outliers outliers;                 // under the finished model
-  std::vector<StageCost> stages;
-};
 
 struct FittedModel {
   Model model;  // provenance_json filled

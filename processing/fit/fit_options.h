@@ -5,6 +5,7 @@
 #include <string>
 
 #include "processing/brdf/cluster_materials.h"
+#include "processing/interreflection/indirect_light.h"
 #include "processing/normals/fit_normals.h"
 
 namespace lumitexel {
@@ -19,6 +20,13 @@ enum class FitMethod {
 enum class NormalChoice { Auto, Fitted, Mesh };
 const char* to_string(NormalChoice choice);  // "auto", "fitted", "mesh"
 
+// Whether light between the object's surfaces is sought (interreflection_stage.h), and how.
+struct InterreflectionOptions {
+  bool wanted = true;
+  int rounds = 2;  // at most; the first costs no fit of its own where normals are fitted after it
+  IndirectOptions light;
+};
+
 struct FitOptions {
   std::string quality = "standard";
   FitMethod method = FitMethod::Lumitexel;
@@ -28,6 +36,7 @@ struct FitOptions {
   bool principal_functions = false;         // tried for each material, and kept where left-out lumitexels are predicted better
   NormalChoice normals = NormalChoice::Auto;
   NormalFitOptions normal_fit;
+  InterreflectionOptions interreflections;
   ErrorSource errors = ErrorSource::Auto;
   double intensity_weight = 0.3;            // s of the paper's eq. 6; only the paper's method looks at it
   std::size_t learning_lumitexels = 10000;  // that the materials are learnt on
@@ -38,7 +47,7 @@ struct FitOptions {
   // reflectance under everything. Both found on held-out photographs of two sessions; see the README.
   double relative_error = 0.3, error_floor_share = 0.3;
 
-  // Learning and final lumitexels. draft: 2,000, 2,000; standard: 10,000, 5,000; reference: all. Throws BadInput on any other name.
+  // Learning and final lumitexels. draft: 2,000, 2,000; standard: 10,000, 5,000; reference: all. Rounds of light between surfaces: 1, 2, 4. Throws BadInput on any other name.
   static FitOptions preset(const std::string& quality);
 };
 

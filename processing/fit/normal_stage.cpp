@@ -1,5 +1,7 @@
 #include "processing/fit/normal_stage.h"
 
+#include "processing/normals/sigma_scale.h"
+
 namespace lumitexel {
 
 std::optional<FittedNormals> seek_normals(const CalibratedSession& session, const FitInputs& inputs, const std::vector<int>& label,
@@ -20,8 +22,14 @@ std::optional<FittedNormals> seek_normals(const CalibratedSession& session, cons
   timer.begin("normals");
   progress.begin("normals", options.normal_fit.steps, "steps");
   const DirectedLumitexels lumitexels(session, inputs.lumitexels);
-  return fit_normals(lumitexels, lumitexel_neighbours(lumitexels, inputs.atlas.width), bases, label, median, options.normal_fit,
-                     [&](int step) { progress.update(step); });
+  FittedNormals fitted = fit_normals(lumitexels, lumitexel_neighbours(lumitexels, inputs.atlas.width), bases, label, median,
+                                     options.normal_fit, [&](int step) { progress.update(step); });
+  summary.normal_sigma_scale =
+      normal_sigma_scale(session, inputs.lumitexels, inputs.atlas.width, bases, label, median, options.normal_fit);
+  for (float& sigma : fitted.sigma_rad) {
+    sigma = static_cast<float>(std::min(*summary.normal_sigma_scale * static_cast<double>(sigma), options.normal_fit.prior.coarse_sigma_rad));
+  }
+  return fitted;
 }
 
 void turn(const std::vector<Eigen::Vector3d>& normals, LumitexelSet& lumitexels) {

@@ -56,6 +56,18 @@ json outliers_json(const Outliers& outliers, const CalibratedSession& session) {
           {"by_material", by_material}};
 }
 
+json indirect_json(const IndirectSummary& indirect, const IndirectOptions& light) {
+  return {{"bounces", light.bounces},
+          {"paths_a_sample", light.paths},
+          {"largest_albedo", indirect.albedo},
+          {"largest_bound", indirect.largest_bound},
+          {"lumitexels_concerned", indirect.concerned},
+          {"samples_followed", indirect.samples},
+          {"share_of_reflectance", indirect.share},
+          {"change_by_round", indirect.change},
+          {"dropped_paths", indirect.dropped_paths}};
+}
+
 }  // namespace
 
 std::string provenance_json(const CalibratedSession& session, const FitOptions& options, const FitSummary& summary) {
@@ -67,6 +79,7 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
                        {"most_lobes", options.most_lobes},
                        {"principal_functions", options.principal_functions},
                        {"normals", to_string(options.normals)},
+                       {"interreflections", options.interreflections.wanted},
                        {"intensity_weight", options.method == FitMethod::Paper ? json(options.intensity_weight) : json(nullptr)},
                        {"materials", options.materials},
                        {"learning_lumitexels", options.learning_lumitexels},
@@ -109,6 +122,8 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
                                {"deviance_gain_sigma", summary.normals_worth->gain_sigma},
                                {"left_out_samples", summary.normals_worth->samples}};
   }
+  if (summary.normal_sigma_scale) object["normal_sigma_scale"] = *summary.normal_sigma_scale;
+  if (summary.indirect) object["light_between_surfaces"] = indirect_json(*summary.indirect, options.interreflections.light);
   object["outliers"] = outliers_json(summary.outliers, session);
   object["texels_by_material"] = summary.texels_by_material;
   object["prior"] = prior_json(summary.prior);

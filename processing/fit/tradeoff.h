@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "processing/calibration/calibrated_session.h"
-#include "processing/model/evaluate_model.h"
+#include "processing/evaluation/evaluate_model.h"
 #include "processing/fit/tradeoff_settings.h"
 #include "rig/progress.h"
 

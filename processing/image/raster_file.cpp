@@ -56,13 +56,13 @@ void copy_samples(const cv::Mat& from, Image& to) {
 }
 
 std::vector<std::uint8_t> png_bytes(const Image& image) {
-  if (image.channels != 1 && image.channels != 3) throw Error("a PNG has one or three channels");
+  if (image.channels != 1 && image.channels != 3 && image.channels != 4) throw Error("a PNG has one, three or four channels");
   cv::Mat mat(image.height, image.width, CV_8UC(image.channels));
   for (int y = 0; y < image.height; ++y) {
     std::uint8_t* row = mat.ptr<std::uint8_t>(y);
     for (int x = 0; x < image.width; ++x) {
       for (int c = 0; c < image.channels; ++c) {
-        const float value = image.at(x, y, image.channels == 3 ? 2 - c : c);
+        const float value = image.at(x, y, image.channels >= 3 && c < 3 ? 2 - c : c);
         // Written so that NaN fails the first comparison and becomes 0.
         const float unit = value > 0.0f ? (value < 1.0f ? value : 1.0f) : 0.0f;
         row[x * image.channels + c] = static_cast<std::uint8_t>(unit * 255.0f + 0.5f);

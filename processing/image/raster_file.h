@@ -15,7 +15,7 @@ struct RasterImage {
 
 // Throws BadInput naming the file if it is missing, truncated or neither PNG nor TIFF. An alpha channel is dropped.
 RasterImage read_raster(const std::filesystem::path& path);
-// Values in [0, 1] as 8-bit PNG, clipped; NaN becomes 0. One or three channels. Throws Error.
+// Values in [0, 1] as 8-bit PNG, clipped; NaN becomes 0. One or three channels, or four, the last alpha. Throws Error.
 void write_png8(const std::filesystem::path& path, const Image& unit_values);
 // The same PNG as bytes, for embedding in a page.
 std::string encode_png8(const Image& unit_values);

@@ -20,6 +20,7 @@ const std::vector<std::string> kWeightPlanes{"R", "G", "B", "A"};  // names that
 constexpr const char* kWeights = "weights_";
 constexpr const char* kProjectionWeights = "projection_weights_";
 
+constexpr const char* kIndirectFiles[] = {"indirect_bound.exr", "indirect_share.exr"};
 constexpr const char* kBeforeNormals = "before_normals_";
 
 std::string weights_file(const std::string& prefix, int file) { return prefix + std::to_string(file) + ".exr"; }
@@ -153,14 +154,33 @@ void read_layer(const fs::path& directory, const std::string& prefix, const Laye
   }
 }
 
+void write_indirect(const fs::path& directory, const Image& indirect) {
+  for (int k = 0; k < indirect.channels; ++k) {
+    Image plane(indirect.width, indirect.height, 1);
+    for (std::size_t t = 0; t < plane.data.size(); ++t) plane.data[t] = indirect.data[2 * t + static_cast<std::size_t>(k)];
+    write_exr_colour(directory / kIndirectFiles[k], plane);
+  }
+}
+
+void read_indirect(const fs::path& directory, Model& model) {
+  model.indirect = Image(model.width, model.height, 2);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Image plane = read_map(directory / kIndirectFiles[k], model, {"Y"}, 0.0f);
+    for (std::size_t t = 0; t < plane.data.size(); ++t) model.indirect.data[2 * t + k] = plane.data[t];
+  }
+}
+
 }  // namespace
 
-std::vector<AtlasMap> atlas_maps(const LayerShape& layer, const std::optional<LayerShape>& before_normals) {
+std::vector<AtlasMap> atlas_maps(const MapsShape& shape) {
   std::vector<AtlasMap> maps{{"normal.exr", {"R", "G", "B"}}, {"uncertainty.exr", {"Y"}}, {"samples.exr", {"Y"}}};
-  add_layer("", layer, maps);
-  if (before_normals) {
-    add_layer(kBeforeNormals, *before_normals, maps);
+  add_layer("", shape.layer, maps);
+  if (shape.before_normals) {
+    add_layer(kBeforeNormals, *shape.before_normals, maps);
     maps.push_back({"normal_sigma.exr", {"Y"}});
+  }
+  if (shape.indirect) {
+    for (const char* file : kIndirectFiles) maps.push_back({file, {"Y"}});
   }
   return maps;
 }
@@ -170,15 +190,16 @@ void write_atlas_maps(const fs::path& directory, const Model& model) {
   write_exr_colour(directory / "normal.exr", model.normal);
   write_exr_colour(directory / "uncertainty.exr", model.uncertainty);
   write_exr_colour(directory / "samples.exr", model.samples);
+  write_indirect(directory, model.indirect);
   if (!has_normals(model)) return;
   const ReflectanceLayer& before = *model.before_normals;
   write_layer(directory, kBeforeNormals, model, before.material, before.weights, before.projection_weights);
   write_exr_colour(directory / "normal_sigma.exr", model.normal_sigma);
 }
 
-void read_atlas_maps(const fs::path& directory, const LayerShape& layer, const std::optional<LayerShape>& before_normals, Model& model) {
+void read_atlas_maps(const fs::path& directory, const MapsShape& shape, Model& model) {
   ReflectanceLayer last{std::move(model.materials), {}, {}, {}};
-  read_layer(directory, "", layer, model, last);
+  read_layer(directory, "", shape.layer, model, last);
   model.materials = std::move(last.materials);
   model.material = std::move(last.material);
   model.weights = std::move(last.weights);
@@ -186,8 +207,9 @@ void read_atlas_maps(const fs::path& directory, const LayerShape& layer, const s
   read_normals(directory / "normal.exr", model);
   model.uncertainty = read_map(directory / "uncertainty.exr", model, {"Y"}, 0.0f);
   model.samples = read_map(directory / "samples.exr", model, {"Y"}, 0.0f);
-  if (!before_normals) return;
-  read_layer(directory, kBeforeNormals, *before_normals, model, *model.before_normals);
+  if (shape.indirect) read_indirect(directory, model);
+  if (!shape.before_normals) return;
+  read_layer(directory, kBeforeNormals, *shape.before_normals, model, *model.before_normals);
   model.normal_sigma = read_map(directory / "normal_sigma.exr", model, {"Y"}, 0.0f);
 }
 

@@ -6,6 +6,7 @@
 //   normal.exr        R,G,B: unit, in world; zero where there is none
 //   before_normals_cluster.exr, before_normals_weights_0.exr, …  the stages before normals were fitted, if they were
 //   normal_sigma.exr  Y: one sigma of the fitted normal per tangent axis, radians, if normals were fitted
+//   indirect_bound.exr, indirect_share.exr  Y: Model::indirect, if it was looked for
 //   uncertainty.exr   Y: one sigma of the texel's reflectance, relative
 //   samples.exr       Y: how many samples the texel was fitted to
 #pragma once
@@ -30,14 +31,19 @@ struct LayerShape {
   bool principal_functions = false;
 };
 
-// What a model of these layers consists of. before_normals: nothing where normals were not fitted.
-std::vector<AtlasMap> atlas_maps(const LayerShape& layer, const std::optional<LayerShape>& before_normals);
+struct MapsShape {
+  LayerShape layer;
+  std::optional<LayerShape> before_normals;  // nothing where normals were not fitted
+  bool indirect = false;                     // whether light between surfaces was looked for
+};
+
+// What a model of this shape consists of.
+std::vector<AtlasMap> atlas_maps(const MapsShape& shape);
 
 void write_atlas_maps(const std::filesystem::path& directory, const Model& model);  // throws Error
 
 // Fills the maps of `model`, whose size and materials are known, those of before_normals too if it is there. Throws BadInput naming the file and the texel for a
 // map that is missing, of another size, not finite, negative (all but normals), or a material or normal that cannot be.
-void read_atlas_maps(const std::filesystem::path& directory, const LayerShape& layer, const std::optional<LayerShape>& before_normals,
-                     Model& model);
+void read_atlas_maps(const std::filesystem::path& directory, const MapsShape& shape, Model& model);
 
 }  // namespace lumitexel

@@ -51,6 +51,12 @@ struct Model {
   // The stages before normals were fitted, which go with the mesh's own normals; nothing where they were not.
   std::optional<ReflectanceLayer> before_normals{};
   Image normal_sigma{};  // one-sigma of the fitted normal per tangent axis, radians; 1 channel; empty where they were not fitted
+  // Light between the object's own surfaces: after how many bounces it was taken out of the samples that the last stage was fitted to. 0: it was
+  // not, and is in the reflectance.
+  int indirect_bounces = 0;
+  // 2 channels: the most that it could be beside a lamp's light (indirect_bound.h), and what was found, as a share of the texel's samples; empty
+  // where nobody looked.
+  Image indirect{};
   Image uncertainty;  // one-sigma of the texel's reflectance prediction, relative; 1 channel
   Image samples;      // number of samples the texel was fitted to; 1 channel; 0 in filled-in texels
 

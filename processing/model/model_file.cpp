@@ -21,6 +21,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "lumitexel model";
 constexpr int kVersion = 1;
+constexpr int kMostBounces = 1000;
 constexpr int kLargestAtlas = 1 << 15;  // a side of more than this is a damaged number, not an atlas
 // ---- writing
 
@@ -35,19 +36,22 @@ Json to_json(const LayerShape& shape, std::size_t materials) {
   return {{"materials", materials}, {"basis_size", shape.basis_size}, {"principal_functions", shape.principal_functions}};
 }
 
+bool looked_for_indirect(const Model& model) { return !model.indirect.data.empty(); }
+
 Json model_json(const Model& model) {
   const Json provenance = Json::parse(model.provenance_json, nullptr, false);
   if (!provenance.is_object()) throw Error("model: its provenance is not a JSON object");
   Json maps = Json::object();
   const LayerShape shape = shape_of(model.weights, model.projection_weights);
   const std::optional<LayerShape> before = shape_before_normals(model);
-  for (const AtlasMap& map : atlas_maps(shape, before)) maps[map.file] = map.channels;
+  for (const AtlasMap& map : atlas_maps({shape, before, looked_for_indirect(model)})) maps[map.file] = map.channels;
   Json document = {{"format", kFormat},
                    {"version", kVersion},
                    {"channels", colour_channel_names(model.channels)},
                    {"atlas", {{"width", model.width}, {"height", model.height}}}};
   document.update(to_json(shape, model.materials.size()));
   if (before) document["before_normals"] = to_json(*before, model.before_normals->materials.size());
+  if (looked_for_indirect(model)) document["indirect_bounces"] = model.indirect_bounces;
   document["maps"] = maps;
   document["provenance"] = provenance;
   return document;
@@ -83,6 +87,7 @@ void require_consistent(const Model& model) {
     consistent = consistent && fits(model.normal_sigma, 1) &&
                  layer_fits(model, before.materials, before.material, before.weights, before.projection_weights);
   }
+  consistent = consistent && (!looked_for_indirect(model) || fits(model.indirect, 2));
   if (!consistent) throw Error("model: maps, mesh and basis do not fit together");
 }
 
@@ -144,6 +149,7 @@ struct ModelHeader {
   Model model;  // channels, width, height, provenance
   LayerHeader layer;
   std::optional<LayerHeader> before_normals;
+  bool indirect = false;
 };
 
 int int_field(const Json& parent, const char* key, int minimum, int maximum, const std::string& where) {
@@ -185,6 +191,8 @@ ModelHeader parse_header(const std::string& text, const std::string& where) {
   if (document.contains("before_normals")) {
     header.before_normals = parse_layer(document.at("before_normals"), where + ": before_normals");
   }
+  header.indirect = document.contains("indirect_bounces");
+  if (header.indirect) header.model.indirect_bounces = int_field(document, "indirect_bounces", 0, kMostBounces, where);
   const Json provenance = document.value("provenance", Json());
   if (!provenance.is_object()) throw BadInput(where + ": provenance", provenance.dump(), "an object");
   for (const auto& [key, is_right, expected] : kProvenanceTypes) {
@@ -263,7 +271,7 @@ Model read_model(const fs::path& directory) {
   read_basis(directory / "basis.json", header, model);
   std::optional<LayerShape> before;
   if (header.before_normals) before = header.before_normals->shape;
-  read_atlas_maps(directory, header.layer.shape, before, model);
+  read_atlas_maps(directory, {header.layer.shape, before, header.indirect}, model);
   model.mesh = read_mesh(directory / "mesh.ply");
   if (fs::exists(directory / "outliers.csv")) model.outliers_csv = read_whole_file(directory / "outliers.csv");
   if (model.mesh.texcoords.size() != model.mesh.positions.size()) {

@@ -42,6 +42,7 @@ class ViewRenderer {
  public:
   // Keeps a reference to the model.
   explicit ViewRenderer(const Model& model) : surface_(model) {}
+  const Model& model() const { return surface_.model(); }
 
   // Throws BadInput naming the view if its light has another number of channels than the model.
   RenderedView render(const View& view, const RenderOptions& options) const;

@@ -66,6 +66,18 @@ std::string picture(const Image& unit_values, const std::string& description) {
          "\">";
 }
 
+std::string css_colour(const std::array<float, 3>& colour) {
+  char text[40];
+  std::snprintf(text, sizeof text, "rgb(%.0f,%.0f,%.0f)", 255.0 * colour[0], 255.0 * colour[1], 255.0 * colour[2]);
+  return text;
+}
+
+std::string colour_scale(const std::array<float, 3>& low, const std::array<float, 3>& high, const std::string& low_means,
+                         const std::string& high_means) {
+  return "<div class=\"scale\"><div class=\"bar\" style=\"background:linear-gradient(to right," + css_colour(low) + "," + css_colour(high) +
+         ")\"></div><div class=\"ends\"><span>" + escaped(low_means) + "</span><span>" + escaped(high_means) + "</span></div></div>\n";
+}
+
 std::string figure(const std::string& picture_markup, const std::string& caption) {
   return "<figure>" + picture_markup + "<figcaption>" + escaped(caption) + "</figcaption></figure>\n";
 }

@@ -2,6 +2,7 @@
 // name from a file cannot become markup.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,10 @@ std::string number(double value, int digits = 3);
 
 // An <img> that carries its PNG within itself. Values in [0, 1].
 std::string picture(const Image& unit_values, const std::string& description);
+std::string css_colour(const std::array<float, 3>& colour);  // of sRGB in [0, 1]
+// A bar from one colour (sRGB in [0, 1]) to another with what its ends mean.
+std::string colour_scale(const std::array<float, 3>& low, const std::array<float, 3>& high, const std::string& low_means,
+                         const std::string& high_means);
 // A picture (markup) over its caption (text).
 std::string figure(const std::string& picture_markup, const std::string& caption);
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "processing/model/image_error.h"
+#include "processing/evaluation/image_error.h"
 
 namespace lumitexel {
 

@@ -8,26 +8,34 @@
 #include "processing/report/report_sections.h"
 
 namespace lumitexel {
+namespace {
 
-std::string report_json(const ReportSubject& subject) {
-  using Json = nlohmann::json;
+using Json = nlohmann::json;
+
+Json page_data(const ReportSubject& subject) {
   const bool compared = subject.session != nullptr && subject.evaluation != nullptr;
-  const Json data = {{"summary", summary_json(subject)},
-                     {"evaluation", compared ? Json::parse(evaluation_json(*subject.evaluation)) : Json(nullptr)},
-                     {"provenance", Json::parse(subject.model.provenance_json)},
-                     {"texels_by_material", texels_by_material(subject.model)},
-                     {"coverage", coverage_json(subject.model)},
-                     {"nearest_materials", nearest_json(subject)}};
-  return data.dump(1);
+  const Json provenance = Json::parse(subject.model.provenance_json);
+  return {{"summary", summary_json(subject)},
+          {"stages", stages_json(provenance, compared ? subject.evaluation : nullptr)},
+          {"evaluation", compared ? Json::parse(evaluation_json(*subject.evaluation)) : Json(nullptr)},
+          {"provenance", provenance},
+          {"texels_by_material", texels_by_material(subject.model)},
+          {"coverage", coverage_json(subject.model)},
+          {"normals", normals_json(subject.model)},
+          {"nearest_materials", nearest_json(subject)}};
 }
 
+}  // namespace
+
+std::string report_json(const ReportSubject& subject) { return page_data(subject).dump(1); }
+
 std::string model_report(const ReportSubject& subject, Progress& progress) {
-  using Json = nlohmann::json;
-  const Json provenance = Json::parse(subject.model.provenance_json);
+  const Json data = page_data(subject);
+  const Json& provenance = data.at("provenance");
   const ViewRenderer renderer(subject.model);
   const bool compared = subject.session != nullptr && subject.evaluation != nullptr;
 
-  std::string body = headline(subject, summary_json(subject));
+  std::string body = headline(subject, data.at("summary"));
   if (compared) {
     body += typical_comparison(subject, renderer);
     body += comparison_section(subject, renderer, progress);
@@ -38,15 +46,16 @@ std::string model_report(const ReportSubject& subject, Progress& progress) {
                           "");
   }
   body += subject.viewer;
-  body += sample_error_section(provenance);
+  body += stage_section(data.at("stages"), provenance);
   if (compared) body += photograph_error_section(*subject.evaluation);
   body += material_section(subject, renderer);
-  body += nearest_section(nearest_json(subject));
+  body += nearest_section(subject);
+  body += normals_section(subject, data.at("normals"), renderer, map_view(subject));
   body += coverage_section(subject.model, renderer, map_view(subject));
   body += outlier_section(provenance);
   if (subject.session != nullptr) body += setup_section(*subject.session);
   body += timing_section(provenance) + definitions_section();
-  return html::page(subject.name + " – Lumitexel report", kPageStyle, body, report_json(subject));
+  return html::page(subject.name + " – Lumitexel report", kPageStyle, body, data.dump(1));
 }
 
 }  // namespace lumitexel

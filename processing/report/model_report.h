@@ -6,7 +6,7 @@
 
 #include "processing/brdf/nearest_material.h"
 #include "processing/calibration/calibrated_session.h"
-#include "processing/model/evaluate_model.h"
+#include "processing/evaluation/evaluate_model.h"
 #include "processing/model/model.h"
 #include "rig/progress.h"
 
@@ -19,12 +19,13 @@ struct ReportSubject {
   const CalibratedSession* session = nullptr;
   const Evaluation* evaluation = nullptr;
   std::span<const KnownMaterial> known{};  // measured materials to name the nearest of
+  std::string known_source{};               // where they are from, "the … database"
   std::string viewer{};                    // a section with the interactive view (viewer/viewer_section.h); empty: none
 };
 
 // The page. Every number on it is also in its <script type="application/json" id="data">: {"summary": the sentences on top,
-// "evaluation": as `lumitexel evaluate --json` or null, "provenance": the fit's, "texels_by_material": [texels that were fitted to
-// samples], "coverage": of the texels and their sigma, "nearest_materials": [three for each material]}.
+// "stages": the fit's, "evaluation": as `lumitexel evaluate --json` or null, "provenance": the fit's, "texels_by_material": [texels that were fitted to
+// samples], "coverage": of the texels and their sigma, "normals": tilts and sigmas or null, "nearest_materials": [three for each material]}.
 std::string report_json(const ReportSubject& subject);
 std::string model_report(const ReportSubject& subject, Progress& progress);
 

@@ -21,6 +21,7 @@ section { border-top: 1px solid var(--line); padding-top: 26px; margin-top: 36px
 .tile b { display: block; font-size: 24px; font-weight: 650; font-variant-numeric: tabular-nums; }
 .tile span { font-size: 13px; color: var(--quiet); display: block; line-height: 1.35; }
 .row { display: grid; grid-template-columns: repeat(auto-fit, minmax(240px, 1fr)); gap: 14px; }
+.two { grid-template-columns: repeat(auto-fit, minmax(400px, 1fr)); }
 .swatches { display: grid; grid-template-columns: repeat(auto-fill, minmax(170px, 1fr)); gap: 14px; }
 figure { margin: 0 0 12px; }
 figure img, figure svg { display: block; width: 100%; height: auto; border-radius: 6px; }

@@ -66,19 +66,21 @@ std::string coverage_section(const Model& model, const ViewRenderer& renderer, c
   const Json& sigma = data.at("relative_sigma");
   const Image normal = renderer.render_aov(view, Aov::Normal);
   const double most = samples.at("most").is_number() ? samples.at("most").get<double>() : 1.0;
-  const std::string views = html::figure(
-      html::picture(shown(renderer.render_aov(view, Aov::Samples), normal, most, true), "samples a texel"),
-      "How many photographs measured each point: light " + count(samples.at("most")) + ", blue none. Half of the texels have " +
-          count(samples.at("median")) + " or more, nine tenths " + count(samples.at("tenth")) + " or more.");
-  const std::string uncertain = html::figure(
-      html::picture(shown(renderer.render_aov(view, Aov::Sigma), normal, kFullSigma, false), "uncertainty"),
-      "How uncertain the reflectance is, one sigma: light 0, red " + percent(Json(kFullSigma)) + " and more. Half of the texels are within " +
-          percent(sigma.at("median")) + ", nine tenths within " + percent(sigma.at("nine_tenths")) + ".");
+  const std::string views =
+      html::figure(html::picture(shown(renderer.render_aov(view, Aov::Samples), normal, most, true), "samples a texel"),
+                   "How many photographs measured each point. Half of the texels have " + count(samples.at("median")) +
+                       " or more, nine tenths " + count(samples.at("tenth")) + " or more.") +
+      html::colour_scale(false_colour(-1.0), false_colour(0.0), "no photograph", count(samples.at("most")) + " photographs");
+  const std::string uncertain =
+      html::figure(html::picture(shown(renderer.render_aov(view, Aov::Sigma), normal, kFullSigma, false), "uncertainty"),
+                   "How uncertain the reflectance is, one sigma of its value. Half of the texels are within " + percent(sigma.at("median")) +
+                       ", nine tenths within " + percent(sigma.at("nine_tenths")) + ".") +
+      html::colour_scale(false_colour(0.0), false_colour(1.0), "0 %", percent(Json(kFullSigma)) + " and more");
   return html::section("Where it was measured, and how surely",
                        "Points that few photographs saw lit are less certain. Blue on the left and red on the right is where more "
                        "photographs would help most; what was never measured borrows from its neighbours and is blue and red. Thin lines are edges of the "
                        "atlas's patches, where a texel borrows, too.",
-                       "<div class=\"row\">" + views + uncertain + "</div>\n");
+                       "<div class=\"row two\"><div>" + views + "</div><div>" + uncertain + "</div></div>\n");
 }
 
 }  // namespace lumitexel

@@ -15,7 +15,7 @@ constexpr double kLooksAlike = 0.05, kSimilar = 0.1, kAkin = 0.2;
 std::string in_words(double distance) {
   if (distance < kLooksAlike) return "hardly to be told apart";
   if (distance < kSimilar) return "similar";
-  return distance < kAkin ? "akin, clearly different" : "none carried is like it";
+  return distance < kAkin ? "akin, clearly different" : "none known is like it";
 }
 
 }  // namespace
@@ -32,7 +32,8 @@ Json nearest_json(const ReportSubject& subject) {
   return all;
 }
 
-std::string nearest_section(const Json& nearest) {
+std::string nearest_section(const ReportSubject& subject) {
+  const Json nearest = nearest_json(subject);
   std::vector<std::vector<std::string>> rows;
   for (std::size_t m = 0; m < nearest.size(); ++m) {
     if (nearest[m].empty()) continue;
@@ -44,9 +45,11 @@ std::string nearest_section(const Json& nearest) {
   }
   if (rows.empty()) return "";
   return html::section("What the materials resemble",
-                       "Each material beside the measured materials that this program knows, the nearest first. In brackets the distance: "
-                       "root mean square difference of cube roots of f cos over light and view directions. 0 is the same; from about 0.05 on "
-                       "spheres begin to look different. Only few measured materials are carried, so that the nearest may be far.",
+                       "Each material beside the " + std::to_string(subject.known.size()) +
+                           (subject.known_source.empty() ? " materials known" : " of " + subject.known_source) +
+                           ", the nearest first. A likeness in how light is reflected, which does not say what the material is made of. In "
+                           "brackets the distance: root mean square difference of cube roots of f cos over light and view directions. 0 is the "
+                           "same; from about 0.05 on spheres begin to look different.",
                        html::table({"", "the nearest is", "nearest", "second", "third"}, rows));
 }
 

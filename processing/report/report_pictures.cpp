@@ -1,5 +1,4 @@
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 #include "processing/image/tone_map.h"
@@ -17,16 +16,10 @@ constexpr int kSphereSize_px = 180;
 constexpr int kMapSize_px = 520;
 constexpr std::size_t kMostComparisons = 8;  // a page that still opens at once
 
-std::string css_colour(const std::array<float, 3>& colour) {
-  char text[40];
-  std::snprintf(text, sizeof text, "rgb(%.0f,%.0f,%.0f)", 255.0 * colour[0], 255.0 * colour[1], 255.0 * colour[2]);
-  return text;
-}
-
 std::string difference_scale() {
   const std::string percent = html::number(100.0 * kDifferenceRange);
   return "<div class=\"scale\"><div class=\"bar\" style=\"background:linear-gradient(to right," +
-         css_colour(false_colour(-1.0)) + "," + css_colour(false_colour(0.0)) + "," + css_colour(false_colour(1.0)) +
+         html::css_colour(false_colour(-1.0)) + "," + html::css_colour(false_colour(0.0)) + "," + html::css_colour(false_colour(1.0)) +
          ")\"></div><div class=\"ends\"><span>rendering darker by " + percent + " % of white</span><span>equal</span>" +
          "<span>brighter by " + percent + " %</span></div></div>\n";
 }
@@ -53,14 +46,14 @@ std::string comparison(const View& view, const ViewPictures& pictures, const Vie
 }
 
 std::string lobe_text(const Brdf& brdf) {
-  std::string text = "diffuse albedo ";
+  std::string text = "diffuse albedo " + std::string(brdf.channels == 3 ? "(red / green / blue) " : "");
   for (int c = 0; c < brdf.channels; ++c) {
     text += (c > 0 ? " / " : "") + html::number(std::numbers::pi * brdf.diffuse[static_cast<std::size_t>(c)], 2);
   }
   const bool lafortune = brdf.family == BrdfFamily::Lafortune;
   const std::string strength = lafortune ? "peak (1/sr)" : brdf.family == BrdfFamily::Ggx ? "F0" : "albedo";
   for (const auto& lobe : brdf.lobes) {
-    text += "; " + std::string(to_string(brdf.family)) + " lobe, " + strength + " ";
+    text += "; " + std::string(lafortune ? "Lafortune" : brdf.family == BrdfFamily::Ggx ? "GGX" : to_string(brdf.family)) + " lobe, " + strength + " ";
     for (int c = 0; c < brdf.channels; ++c) {
       text += (c > 0 ? " / " : "") + html::number(std::exp(lobe[static_cast<std::size_t>(c)].log_strength), 2);
     }
@@ -97,13 +90,31 @@ std::string sphere_figures(const Model& model) {
   for (std::size_t m = 0; m < spheres.size(); ++m) {
     const std::string share = html::number(100.0 * static_cast<double>(texels[m]) / total, 2);
     text += "<figure>" + html::picture(sphere_picture(spheres[m], white), "sphere of material " + std::to_string(m)) +
-            "<figcaption><span class=\"key\" style=\"background:" + css_colour(material_colour(static_cast<int>(m))) +
+            "<figcaption><span class=\"key\" style=\"background:" + html::css_colour(material_colour(static_cast<int>(m))) +
             "\"></span>" +
             html::escaped("Material " + std::to_string(m) + ", " + share + " % of the measured texels; " +
                           lobe_text(model.materials[m].brdf)) +
             "</figcaption></figure>\n";
   }
   return text + "</div>\n";
+}
+
+// The same view cut down to the object and enlarged until its longer side is the picture's.
+View tightened(View view, const Mesh& mesh) {
+  CameraModel& camera = view.camera;
+  Eigen::Vector2d low(camera.width_px, camera.height_px), high = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector3d& position : mesh.positions) {
+    const Eigen::Vector2d pixel = camera.project(view.camera_from_world * position);
+    low = low.cwiseMin(pixel);
+    high = high.cwiseMax(pixel);
+  }
+  constexpr double kMargin_px = 4.0;
+  const double scale = (kMapSize_px - 2.0 * kMargin_px) / (high - low).maxCoeff();
+  const Eigen::Vector2d size = scale * (high - low);
+  camera = {static_cast<int>(std::ceil(size.x() + 2.0 * kMargin_px)), static_cast<int>(std::ceil(size.y() + 2.0 * kMargin_px)),
+            scale * camera.focal_x_px, scale * camera.focal_y_px, scale * (camera.principal_x_px - low.x()) + kMargin_px,
+            scale * (camera.principal_y_px - low.y()) + kMargin_px};
+  return view;
 }
 
 }  // namespace
@@ -116,7 +127,7 @@ View map_view(const ReportSubject& subject) {
     towards_camera = -view.camera_from_world.inverse().linear().col(2);
     up = -view.camera_from_world.inverse().linear().col(1);
   }
-  return framing_view(mesh, subject.model.channels, kMapSize_px, towards_camera, up);
+  return tightened(framing_view(mesh, subject.model.channels, kMapSize_px, towards_camera, up), mesh);
 }
 
 std::string comparison_section(const ReportSubject& subject, const ViewRenderer& renderer, Progress& progress) {

@@ -22,7 +22,10 @@ std::string headline(const ReportSubject& subject, const nlohmann::json& summary
 std::string typical_comparison(const ReportSubject& subject, const ViewRenderer& renderer);
 
 // ---- numbers (report_tables.cpp)
-std::string sample_error_section(const nlohmann::json& provenance);  // the paper's Table II
+// The paper's Table II with the errors of photographs: a list of {"stage", "title", "papers_name", "rms", "share_of_single", "heldout" and
+// "fit": {"clipped", "square_roots"} or null}; the stages that ran.
+nlohmann::json stages_json(const nlohmann::json& provenance, const Evaluation* evaluation);
+std::string stage_section(const nlohmann::json& stages, const nlohmann::json& provenance);
 std::string photograph_error_section(const Evaluation& evaluation);
 std::string outlier_section(const nlohmann::json& provenance);  // empty for a model that was not looked through
 std::string timing_section(const nlohmann::json& provenance);
@@ -40,8 +43,14 @@ std::string setup_section(const CalibratedSession& session);
 nlohmann::json coverage_json(const Model& model);
 std::string coverage_section(const Model& model, const ViewRenderer& renderer, const View& view);
 
+// ---- fitted normals (report_normals.cpp)
+// {"texels_measured", "texels_on_the_meshs_normal", "within_deg", "tilt_against_mesh_deg" and "sigma_deg": {"median", "nine_tenths", "most"}}
+// over the texels that were fitted to samples; null of a model without fitted normals.
+nlohmann::json normals_json(const Model& model);
+std::string normals_section(const ReportSubject& subject, const nlohmann::json& normals, const ViewRenderer& renderer, const View& view);
+
 // ---- known materials (report_nearest.cpp)
 nlohmann::json nearest_json(const ReportSubject& subject);  // a list a material, the three nearest: {"name", "distance"}
-std::string nearest_section(const nlohmann::json& nearest);   // empty where none is known
+std::string nearest_section(const ReportSubject& subject);     // empty where none is known
 
 }  // namespace lumitexel

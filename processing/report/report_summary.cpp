@@ -88,7 +88,7 @@ std::string surface_text(const Json& summary) {
   const auto materials = summary.at("materials").get<std::size_t>();
   const double share = summary.at("share_of_surface_measured").get<double>();
   return (materials == 1 ? std::string("One material was") : std::to_string(materials) + " materials were") + " found. " + share_text(share) +
-         " of the object's surface was measured" + (share < 1.0 ? "; the rest no photograph saw lit, and it borrows from what is beside it." : ".");
+         " of the object's surface was measured" + (share < 1.0 ? "; the rest no photograph shows well enough (in shadow, hidden or from too far aside), and it borrows from what is beside it." : ".");
 }
 
 std::string tile(const std::string& value, const std::string& meaning) {

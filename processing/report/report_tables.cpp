@@ -12,14 +12,23 @@ namespace {
 
 using Json = nlohmann::json;
 
-const char* stage_title(const std::string& stage) {
-  if (stage == "single") return "one BRDF for all (1-RMS)";
-  if (stage == "cluster") return "one BRDF a material (C-RMS)";
-  if (stage == "projection") return "a mixture a texel (P-RMS)";
-  if (stage == "pfa") return "of functions moved to fit (F-RMS)";
-  if (stage == "normal") return "on fitted normals (N-RMS)";
-  return "";
+struct StageName {
+  const char* title;
+  const char* papers;  // in its Table II
+};
+
+StageName name_of(FitStage stage) {
+  switch (stage) {
+    case FitStage::Single: return {"one BRDF for all", "1-RMS"};
+    case FitStage::Cluster: return {"one BRDF a material", "C-RMS"};
+    case FitStage::Projection: return {"a mixture a texel", "P-RMS"};
+    case FitStage::Pfa: return {"of functions moved to fit", "F-RMS"};
+    case FitStage::Normal: return {"on fitted normals", "NF-RMS"};
+  }
+  return {"", ""};
 }
+
+std::string stage_title(FitStage stage) { return std::string(name_of(stage).title) + " (" + name_of(stage).papers + ")"; }
 
 double number_or_nan(const Json& parent, const std::string& key) {
   return parent.is_object() && parent.contains(key) && parent.at(key).is_number() ? parent.at(key).get<double>() : NAN;
@@ -33,7 +42,7 @@ std::string table_by_stage(const Json& lists, const std::vector<std::string>& na
   for (const FitStage stage : kFitStages) {
     const std::string key = to_string(stage);
     if (!lists.is_object() || !lists.contains(key) || !lists.at(key).is_array()) continue;
-    std::vector<std::string> row{stage_title(key)};
+    std::vector<std::string> row{stage_title(stage)};
     for (const Json& value : lists.at(key)) row.push_back(value.is_number() ? html::number(value.get<double>()) : "–");
     row.resize(header.size(), "–");
     rows.push_back(row);
@@ -58,7 +67,7 @@ std::string error_table(const std::string& title, const ErrorByStage& errors) {
   std::vector<std::vector<std::string>> rows;
   for (const FitStage stage : kFitStages) {
     const auto& error = errors[static_cast<std::size_t>(stage)];
-    if (error && std::isfinite(error->relative_rms)) rows.push_back(error_row(stage_title(to_string(stage)), *error));
+    if (error && std::isfinite(error->relative_rms)) rows.push_back(error_row(stage_title(stage), *error));
   }
   if (rows.empty()) return "";
   return "<h3>" + html::escaped(title) + "</h3>" +
@@ -81,6 +90,34 @@ std::string bars(const Json& stages, const std::string& key, double unit, const 
   return text + "</div>\n";
 }
 
+std::vector<std::string> material_names(std::size_t count) {
+  std::vector<std::string> names;
+  for (std::size_t m = 0; m < count; ++m) names.push_back("material " + std::to_string(m));
+  return names;
+}
+
+// The RMS of r again, of each channel and of each material.
+std::string breakdown_tables(const Json& provenance) {
+  std::string body;
+  const auto add = [&body](const std::string& title, const std::string& table) {
+    if (!table.empty()) body += "<h3>" + title + "</h3>" + table;
+  };
+  const Json channels = provenance.value("rms_by_channel", Json::object());
+  std::vector<std::string> names;
+  for (std::size_t c = 0; c < longest_list(channels); ++c) {
+    const auto known = colour_channel_names(static_cast<int>(longest_list(channels)));
+    names.push_back(c < known.size() ? known[c] : std::to_string(c));
+  }
+  add("RMS of r by colour channel", table_by_stage(channels, names));
+  const Json materials = provenance.value("rms_by_material", Json::object());
+  const Json anew = {{"normal", provenance.value("rms_by_material_on_fitted_normals", Json())}};
+  const bool sorted_anew = longest_list(anew) > 0;
+  add(sorted_anew ? "RMS of r by material, as sorted on the mesh's normals" : "RMS of r by material",
+      table_by_stage(materials, material_names(longest_list(materials))));
+  add("RMS of r by material, as sorted anew on fitted normals", table_by_stage(anew, material_names(longest_list(anew))));
+  return body;
+}
+
 }  // namespace
 
 std::vector<std::int64_t> texels_by_material(const Model& model) {
@@ -93,35 +130,48 @@ std::vector<std::int64_t> texels_by_material(const Model& model) {
   return counts;
 }
 
-std::string sample_error_section(const Json& provenance) {
+Json stages_json(const Json& provenance, const Evaluation* evaluation) {
   const Json rms = provenance.value("rms", Json::object());
-  std::vector<std::vector<std::string>> rows;
+  Json stages = Json::array();
   for (const FitStage stage : kFitStages) {
     const double value = number_or_nan(rms, to_string(stage));
-    if (std::isfinite(value)) {
-      rows.push_back(
-          {stage_title(to_string(stage)), html::number(value), html::number(value / number_or_nan(rms, "single"))});
+    if (!std::isfinite(value)) continue;
+    const double share = value / number_or_nan(rms, "single");
+    Json entry = {{"stage", to_string(stage)}, {"title", name_of(stage).title}, {"papers_name", name_of(stage).papers}, {"rms", value},
+                  {"share_of_single", std::isfinite(share) ? Json(share) : Json(nullptr)}};
+    for (const bool heldout : {true, false}) {
+      const ImageError* error = nullptr;
+      if (evaluation != nullptr) {
+        const auto& errors = (heldout ? evaluation->heldout : evaluation->fit)[static_cast<std::size_t>(stage)];
+        if (errors && std::isfinite(errors->clipped_rms)) error = &*errors;
+      }
+      entry[heldout ? "heldout" : "fit"] = error ? Json{{"clipped", error->clipped_rms}, {"square_roots", error->sqrt_rms}} : Json(nullptr);
     }
+    stages.push_back(entry);
   }
-  std::string body = html::table({"stage", "RMS of r", "share of 1-RMS"}, rows);
-  const Json channels = provenance.value("rms_by_channel", Json::object());
-  std::vector<std::string> names;
-  for (std::size_t c = 0; c < longest_list(channels); ++c) {
-    const auto known = colour_channel_names(static_cast<int>(longest_list(channels)));
-    names.push_back(c < known.size() ? known[c] : std::to_string(c));
+  return stages;
+}
+
+std::string stage_section(const Json& stages, const Json& provenance) {
+  std::vector<std::vector<std::string>> rows;
+  for (const Json& stage : stages) {
+    std::vector<std::string> row{stage.at("title").get<std::string>(), stage.at("papers_name").get<std::string>(),
+                                 html::number(stage.at("rms").get<double>()), html::number(number_or_nan(stage, "share_of_single"))};
+    for (const char* kind : {"heldout", "fit"}) {
+      for (const char* figure : {"clipped", "square_roots"}) row.push_back(html::number(number_or_nan(stage.at(kind), figure)));
+    }
+    rows.push_back(row);
   }
-  const std::string by_channel = table_by_stage(channels, names);
-  if (!by_channel.empty()) body += "<h3>By colour channel</h3>" + by_channel;
-  const Json materials = provenance.value("rms_by_material", Json::object());
-  names.clear();
-  for (std::size_t m = 0; m < longest_list(materials); ++m) names.push_back("material " + std::to_string(m));
-  const std::string by_material = table_by_stage(materials, names);
-  if (!by_material.empty()) body += "<h3>By material</h3>" + by_material;
   return html::section(
-      "How well the measurements are explained",
-      "Root mean square difference between predicted and measured reflectance r = f cos, over all samples the "
-      "fit used and all channels, after each stage. Each stage starts from the one above it.",
-      body);
+             "How much each stage of the fit explains",
+             "The fit goes from coarse to fine; each row starts from the one above it. RMS of r: root mean square difference, in 1/sr, between "
+             "predicted and measured reflectance r = f cos over all samples that the fit used and all channels, under the names that "
+             "Lensch et al. (2003) give it in their Table II. Beside it the errors of whole re-rendered photographs, kept out of the fit and used in "
+             "it. A stage that lowers the first and not the held-out ones has learned noise.",
+             html::table({"stage", "in the paper", "RMS of r, 1/sr", "share of 1-RMS", "held out: clipped", "square roots", "used in the fit: clipped",
+                          "square roots"},
+                         rows) +
+                 breakdown_tables(provenance));
 }
 
 std::string photograph_error_section(const Evaluation& evaluation) {

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "processing/evaluation/evaluate_model.h"
+#include "processing/evaluation/image_error.h"
+#include "processing/evaluation/predicted_view.h"
 #include "processing/image/tone_map.h"
-#include "processing/model/evaluate_model.h"
-#include "processing/model/image_error.h"
 
 namespace lumitexel {
 namespace {
@@ -83,7 +84,7 @@ std::array<float, 3> false_colour(double position) {
 ViewPictures make_view_pictures(const ViewRenderer& renderer, const View& view, int channels, FitStage stage,
                                 int width_px) {
   RadianceImage photograph = read_photograph(view, channels);
-  RenderedView rendered = renderer.render(view, {stage, 1});
+  RenderedView rendered = predicted_view(renderer, view, stage);
   const auto counted = object_pixels(photograph, rendered.hit);
   blacken_uncounted(photograph.radiance, counted);
   blacken_uncounted(rendered.radiance, counted);

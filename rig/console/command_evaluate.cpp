@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "processing/model/evaluate_model.h"
+#include "processing/evaluation/evaluate_model.h"
 #include "rig/console/command.h"
 #include "rig/console/input_folder.h"
 

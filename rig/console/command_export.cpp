@@ -9,6 +9,15 @@
 namespace lumitexel {
 namespace {
 
+// What stands after the name of the option in --help, a line for each.
+constexpr const char* kFormats =
+    "Program to write for:\n"
+    "gltf: model.gltf, glTF 2.0 with KHR_materials_specular and a normal texture\n"
+    "mitsuba: scene.xml for Mitsuba 3, mesh, material, lamp and camera, and reference.exr, our rendering of it\n"
+    "materialx: model.mtlx, a gltf_pbr material, with textures and mesh.obj\n"
+    "blender: scene.py, run by blender --python scene.py, and reference.exr, our rendering of it\n"
+    "maps: every map as EXR and PNG, told apart in maps.json, with mesh.ply";
+
 struct ExportSettings {
   std::string model, to, out;
 };
@@ -37,9 +46,7 @@ void add_export_command(CLI::App& app, CommandAction& action) {
   auto settings = std::make_shared<ExportSettings>();
   CLI::App* command = app.add_subcommand("export", "Write a model for other programs, and how much of its look that costs");
   command->add_option("MODEL", settings->model, "Folder of the model")->required();
-  command->add_option("--to", settings->to, "gltf: glTF 2.0, metallic-roughness with KHR_materials_specular; maps: every map as EXR and PNG, told apart in maps.json; "
-                      "blender: scene.py, run by blender --python scene.py; "
-                      "materialx: model.mtlx with textures")->required();
+  command->add_option("--to", settings->to, kFormats)->required();
   command->add_option("--out", settings->out, "New or empty folder to write into")->required();
   command->callback([settings, &action] {
     action = [settings](CommandContext& context) { return export_command(*settings, context); };

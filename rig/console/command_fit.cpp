@@ -18,7 +18,7 @@ struct FitSettings {
   int lobes = 1;
   double intensity_weight = 0.3;
   bool separate_lobes = false, plain_projection = false, principal_functions = false;
-  std::string normals;
+  std::string normals, interreflections;
 };
 
 template <typename Value>
@@ -46,12 +46,15 @@ FitOptions fit_options(const FitSettings& settings) {
   options.plain_projection = settings.plain_projection;
   const std::string normals = settings.normals.empty() ? (options.method == FitMethod::Paper ? "mesh" : "auto") : settings.normals;
   options.normals = named_value("--normals", normals, normal_words());
+  const std::string between = settings.interreflections.empty() ? (options.method == FitMethod::Paper ? "off" : "auto") : settings.interreflections;
+  options.interreflections.wanted = named_value<bool>("--interreflections", between, {{"auto", true}, {"off", false}});
   if (options.method == FitMethod::Paper) {
     if (options.materials == 0) throw BadInput("--materials", "auto with --method paper", "a number: the paper does not choose it");
     if (options.family != BrdfFamily::Lafortune) throw BadInput("--family", settings.family + " with --method paper", "lafortune");
     if (options.errors != ErrorSource::Auto) throw BadInput("--errors", settings.errors + " with --method paper", "no such option");
     FitOptions published = as_published(options);
     published.normals = options.normals;
+    published.interreflections = options.interreflections;
     return published;
   }
   return options;
@@ -130,6 +133,17 @@ std::string normals_line(const FitSummary& summary) {
               worth.enough() ? "fitted" : "the mesh's", worth.gain, worth.gain_sigma);
 }
 
+std::string indirect_line(const FitSummary& summary) {
+  if (!summary.indirect) return "";
+  const IndirectSummary& indirect = *summary.indirect;
+  std::string text = line("light between surfaces: can matter on %.1f %% of the surface (at most %.3f of a lamp's)",
+                          100.0 * static_cast<double>(indirect.concerned) / static_cast<double>(summary.lumitexels), indirect.largest_bound);
+  if (indirect.change.empty()) return text + ", so nobody followed it\n";
+  text += line("; %.1f %% of the light there, changes by round:", 100.0 * indirect.share);
+  for (const double change : indirect.change) text += line(" %.2f %%", 100.0 * change);
+  return text + "\n";
+}
+
 std::string fit_text(const FitSettings& settings, const FitSummary& summary) {
   std::string text = line("%s: %zu materials, %zu lumitexels, %zu samples (%.1f a lumitexel; %zu lumitexels have none)\n",
                           settings.out.c_str(), summary.texels_by_material.size(), summary.lumitexels, summary.samples,
@@ -137,6 +151,7 @@ std::string fit_text(const FitSettings& settings, const FitSummary& summary) {
   if (summary.unseen_triangles > 0) text += line("  %zu triangles are seen by no view\n", summary.unseen_triangles);
   text += error_line(settings, summary);
   text += normals_line(summary);
+  text += indirect_line(summary);
   text += rms_table(summary);
   text += outlier_line(summary.outliers);
   text += "Stage                             seconds   peak MB\n";
@@ -169,8 +184,8 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
   command->add_option("SESSION", settings->session, "Session to fit: captured or imported")->required();
   command->add_option("--out", settings->out, "Folder of the model; a model that is there is replaced")->required();
   command->add_option("--quality", settings->quality,
-                      "draft: materials learnt on 2,000 surface points and fitted to 2,000 each; standard: 10,000 and 5,000; "
-                      "reference: all")
+                      "draft: materials learnt on 2,000 surface points and fitted to 2,000 each, light between surfaces predicted once; "
+                      "standard: 10,000 and 5,000, twice; reference: all, up to four times")
       ->capture_default_str();
   command->add_option("--materials", settings->materials, "How many materials to look for, 1 to 64, or auto: as many as the samples ask for, at most 20")->capture_default_str();
   command->add_option("--method", settings->method,
@@ -184,6 +199,9 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
                       "fitted: normals finer than the mesh's, from all photographs, and then everything once more on them; mesh: the "
                       "mesh's own; auto: fitted where photographs left out for it are then predicted better (default: auto, with "
                       "--method paper mesh)");
+  command->add_option("--interreflections", settings->interreflections,
+                      "auto: light between the object's own surfaces is predicted and taken out of the samples where it can matter; off "
+                      "(default: auto, with --method paper off)");
   command->add_option("--errors", settings->errors,
                       "What a fit takes for noise. given: 30 % of each prediction and of the median; estimated: what each material's "
                       "residuals say, outliers counting less; labels: estimated for telling materials apart, given for fitting "

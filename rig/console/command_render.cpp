@@ -5,7 +5,7 @@
 #include "processing/image/exr_file.h"
 #include "processing/image/raster_file.h"
 #include "processing/image/tone_map.h"
-#include "processing/model/image_error.h"
+#include "processing/evaluation/image_error.h"
 #include "processing/render/carry_model.h"
 #include "processing/render/render_lit.h"
 #include "processing/render/splat.h"

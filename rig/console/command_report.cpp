@@ -26,8 +26,8 @@ std::string title_of(const fs::path& model) {
 
 std::vector<KnownMaterial> measured_materials() {
   std::vector<KnownMaterial> known;
-  for (const std::string& name : sgd_table_names(selected_sgd_table())) {
-    const SgdBrdf brdf = sgd_from_table(selected_sgd_table(), name, "the built-in SGD table");
+  for (const std::string& name : sgd_table_names(measured_sgd_table())) {
+    const SgdBrdf brdf = sgd_from_table(measured_sgd_table(), name, "the built-in table of measured materials");
     known.push_back({name, [brdf](const LobeGeometry& geometry) {
                        const Eigen::Array3d f = evaluate(brdf, geometry);
                        return ChannelValues{f[0], f[1], f[2]};
@@ -51,7 +51,10 @@ CommandResult report_command(const ReportSettings& settings, CommandContext& con
     subject.evaluation = &*evaluation;
   }
   const std::vector<KnownMaterial> known = measured_materials();
-  if (model.channels == kMaxChannels) subject.known = known;
+  if (model.channels == kMaxChannels) {
+    subject.known = known;
+    subject.known_source = "the MERL database of measured materials, as fitted by Bagher, Soler and Holzschuch (2012)";
+  }
   if (!settings.without_viewer) subject.viewer = viewer_section(viewer_page(subject.name, model));
   const fs::path out = settings.out.empty() ? fs::path(settings.model) / "report.html" : fs::path(settings.out);
   const std::string page = model_report(subject, context.progress);

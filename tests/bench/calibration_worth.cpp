@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "processing/calibration/calibrated_session.h"
-#include "processing/model/evaluate_model.h"
+#include "processing/evaluation/evaluate_model.h"
 #include "processing/fit/fit_model.h"
 #include "rig/session_store.h"
 #include "tests/bench/machine.h"

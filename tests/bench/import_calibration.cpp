@@ -14,7 +14,7 @@
 #include "processing/calibration/import/colmap_text.h"
 #include "processing/calibration/import/import_session.h"
 #include "processing/calibration/pose/centred_pose.h"
-#include "processing/model/evaluate_model.h"
+#include "processing/evaluation/evaluate_model.h"
 #include "processing/fit/fit_model.h"
 #include "processing/surface/mesh_file.h"
 #include "rig/session_store.h"

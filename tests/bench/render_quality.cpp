@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "drivers/clock.h"
-#include "processing/model/image_error.h"
+#include "processing/evaluation/image_error.h"
 #include "processing/model/model_file.h"
 #include "processing/model/render_view.h"
 #include "processing/render/render_lit.h"

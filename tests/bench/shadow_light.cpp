@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "drivers/clock.h"
-#include "processing/model/evaluate_model.h"
+#include "processing/evaluation/evaluate_model.h"
 #include "processing/model/model_file.h"
 #include "processing/model/render_view.h"
 #include "processing/render/render_lit.h"

@@ -1,9 +1,10 @@
-#include "processing/model/evaluate_model.h"
+#include "processing/evaluation/evaluate_model.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
+#include "processing/evaluation/predicted_view.h"
 #include "processing/image/radiance_image.h"
 #include "processing/model/render_view.h"
 #include "tests/unit/bad_input_matcher.h"
@@ -146,6 +147,33 @@ TEST_F(EvaluateModel, AModelWithoutProjectionIsJudgedByItsClusters) {
   EXPECT_EQ(json.at("stage"), "cluster");
   EXPECT_TRUE(json.at("heldout_by_stage").at("projection").is_null());
   EXPECT_EQ(json.at("heldout_by_stage").at("cluster"), json.at("heldout"));
+}
+
+// Two squares at right angles: what one sends to the other is part of the photographs, and of the prediction where the fit took it out.
+TEST(PredictedView, AddsLightBetweenSurfacesWhereTheFitTookItOut) {
+  Mesh corner = square_mesh();
+  Mesh wall = square_mesh();
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Eigen::Vector3d p = wall.positions[i];
+    corner.positions.push_back({1.0, p.y(), 1.0 + p.x()});
+    corner.normals.push_back(-Eigen::Vector3d::UnitX());
+    corner.texcoords.push_back(wall.texcoords[i]);
+  }
+  corner.triangles.push_back({4, 6, 5});
+  corner.triangles.push_back({4, 7, 6});
+  Model model = model_of(corner, 2, 2, diffuse_brdf(0.25, 0.25, 0.25));
+  View view = view_from_above(kSize, 5.0);
+  view.light.vector_in_world = Eigen::Vector3d(-1, 0, 1).normalized();
+  const ViewRenderer renderer(model);
+  const Image straight = predicted_view(renderer, view, FitStage::Normal).radiance;
+  model.indirect_bounces = 1;
+  const Image with = predicted_view(renderer, view, FitStage::Normal).radiance;
+  const Image earlier = predicted_view(renderer, view, FitStage::Cluster).radiance;
+  EXPECT_EQ(earlier.data, renderer.render(view, {FitStage::Cluster, 1}).radiance.data);  // fitted to samples as they were
+  const int middle = kSize / 2;
+  // Beside the wall nearly half of what a point faces is the wall, and far from it little.
+  EXPECT_GT(with.at(kSize - 1, middle, 0), 1.2f * straight.at(kSize - 1, middle, 0));
+  EXPECT_LT(with.at(0, middle, 0), 1.1f * straight.at(0, middle, 0));
 }
 
 }  // namespace

@@ -54,6 +54,23 @@ Model odd_model() {
   return model;
 }
 
+// The same after normals were fitted and light between surfaces was taken out: its earlier stages with other materials, labels and weights.
+Model model_on_fitted_normals() {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+  Model model = odd_model();
+  ReflectanceLayer before{{{odd_brdf(random), {odd_brdf(random), odd_brdf(random)}, {}}}, std::vector<std::int16_t>(30, 0), Image(6, 5, 2), {}};
+  for (float& value : before.weights.data) value = unit(random);
+  before.material[3] = Model::kNoMaterial;
+  model.before_normals = before;
+  model.normal_sigma = Image(6, 5, 1);
+  for (float& value : model.normal_sigma.data) value = unit(random);
+  model.indirect = Image(6, 5, 2);
+  for (float& value : model.indirect.data) value = unit(random);
+  model.indirect_bounces = 2;
+  return model;
+}
+
 void expect_equal(const Brdf& a, const Brdf& b) {
   EXPECT_EQ(a.channels, b.channels);
   EXPECT_EQ(a.diffuse, b.diffuse);
@@ -67,27 +84,39 @@ void expect_equal(const Brdf& a, const Brdf& b) {
   }
 }
 
+void expect_equal(const std::vector<ModelMaterial>& a, const std::vector<ModelMaterial>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t m = 0; m < a.size(); ++m) {
+    expect_equal(a[m].brdf, b[m].brdf);
+    ASSERT_EQ(a[m].basis.size(), b[m].basis.size());
+    ASSERT_EQ(a[m].projection_basis.size(), b[m].projection_basis.size());
+    for (std::size_t k = 0; k < a[m].basis.size(); ++k) expect_equal(a[m].basis[k], b[m].basis[k]);
+    for (std::size_t k = 0; k < a[m].projection_basis.size(); ++k) expect_equal(a[m].projection_basis[k], b[m].projection_basis[k]);
+  }
+}
+
 void expect_equal(const Model& a, const Model& b) {
   EXPECT_EQ(a.channels, b.channels);
   EXPECT_EQ(a.width, b.width);
   EXPECT_EQ(a.height, b.height);
   expect_equal(a.single, b.single);
-  ASSERT_EQ(a.materials.size(), b.materials.size());
-  for (std::size_t m = 0; m < a.materials.size(); ++m) {
-    expect_equal(a.materials[m].brdf, b.materials[m].brdf);
-    ASSERT_EQ(a.materials[m].basis.size(), b.materials[m].basis.size());
-    for (std::size_t k = 0; k < a.materials[m].basis.size(); ++k) {
-      expect_equal(a.materials[m].basis[k], b.materials[m].basis[k]);
-      ASSERT_EQ(a.materials[m].projection_basis.size(), b.materials[m].projection_basis.size());
-      if (has_principal_functions(a)) expect_equal(a.materials[m].projection_basis[k], b.materials[m].projection_basis[k]);
-    }
-  }
+  expect_equal(a.materials, b.materials);
   EXPECT_EQ(a.material, b.material);
   EXPECT_EQ(a.weights.data, b.weights.data);
   EXPECT_EQ(a.projection_weights.data, b.projection_weights.data);
   EXPECT_EQ(a.outliers_csv, b.outliers_csv);
   EXPECT_EQ(a.normal.data, b.normal.data);
   EXPECT_EQ(a.uncertainty.data, b.uncertainty.data);
+  EXPECT_EQ(a.normal_sigma.data, b.normal_sigma.data);
+  EXPECT_EQ(a.indirect.data, b.indirect.data);
+  EXPECT_EQ(a.indirect_bounces, b.indirect_bounces);
+  ASSERT_EQ(has_normals(a), has_normals(b));
+  if (has_normals(a)) {
+    expect_equal(a.before_normals->materials, b.before_normals->materials);
+    EXPECT_EQ(a.before_normals->material, b.before_normals->material);
+    EXPECT_EQ(a.before_normals->weights.data, b.before_normals->weights.data);
+    EXPECT_EQ(a.before_normals->projection_weights.data, b.before_normals->projection_weights.data);
+  }
   EXPECT_EQ(a.samples.data, b.samples.data);
   EXPECT_EQ(a.mesh.positions, b.mesh.positions);
   EXPECT_EQ(a.mesh.triangles, b.mesh.triangles);
@@ -97,6 +126,13 @@ void expect_equal(const Model& a, const Model& b) {
 TEST(ModelFile, EverythingComesBackToTheLastBit) {
   const TemporaryFolder folder;
   const Model written = odd_model();
+  write_model(folder / "model", written);
+  expect_equal(read_model(folder / "model"), written);
+}
+
+TEST(ModelFile, FittedNormalsAndTheStagesBeforeThemComeBackToo) {
+  const TemporaryFolder folder;
+  const Model written = model_on_fitted_normals();
   write_model(folder / "model", written);
   expect_equal(read_model(folder / "model"), written);
 }

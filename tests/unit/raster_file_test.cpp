@@ -52,6 +52,16 @@ TEST(RasterFile, Png8ClipsAndRoundsAndNanIsBlack) {
   EXPECT_EQ(read_raster(folder / "colour.png").code_values.data, (std::vector<float>{255, 0, 51}));
 }
 
+TEST(RasterFile, Png8KeepsAlphaLast) {
+  const TemporaryFolder folder;
+  Image image(1, 1, 4);
+  image.data = {1.0f, 0.2f, 0.0f, 0.4f};
+  write_png8(folder / "out.png", image);
+  const cv::Mat bgra = cv::imread((folder / "out.png").string(), cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(bgra.channels(), 4);
+  EXPECT_EQ(bgra.at<cv::Vec4b>(0, 0), cv::Vec4b(0, 51, 255, 102));
+}
+
 TEST(RasterFile, WhatIsNoWholeRasterIsNamed) {
   const TemporaryFolder folder;
   EXPECT_BAD_INPUT(read_raster(folder / "none.png"), "none.png", "no such file");

@@ -109,6 +109,27 @@ TEST(SgdBrdf, AgreesWithTheFormulaWorkedOutByHand) {
   EXPECT_NEAR(evaluate(gold, geometry(75 * degree, 70 * degree, 165 * degree))[2], 0.013618712564991167, 1e-12);
 }
 
+TEST(SgdBrdf, AllMeasuredMaterialsAreCarriedAndFinite) {
+  const std::vector<std::string> names = sgd_table_names(measured_sgd_table());
+  EXPECT_EQ(names.size(), 100u);
+  for (const std::string& name : names) {
+    const SgdBrdf brdf = sgd_from_table(measured_sgd_table(), name, "table");
+    for (const double theta : {0.0, 0.5, 1.0, 1.4}) {
+      const Eigen::Array3d f = evaluate(brdf, geometry(theta, theta, kPi));  // towards the mirror direction
+      EXPECT_TRUE(f.isFinite().all() && (f >= 0.0).all()) << name << " at " << theta;
+    }
+  }
+}
+
+TEST(SgdBrdf, TheSimulationsRowsAreTheAuthorsRows) {
+  for (const std::string& name : sgd_table_names(selected_sgd_table())) {
+    const SgdBrdf own = sgd_from_table(selected_sgd_table(), name, "table"), authors = sgd_from_table(measured_sgd_table(), name, "table");
+    EXPECT_TRUE((evaluate(own, geometry(0.9, 0.8, 2.9)) == evaluate(authors, geometry(0.9, 0.8, 2.9))).all()) << name;
+  }
+  // What a rig's file may name has not grown with the table.
+  EXPECT_BAD_INPUT(material_named("alum-bronze", "rig.toml"), "alum-bronze");
+}
+
 TEST(SgdBrdf, RefusesATableWithoutTheMaterialOrWithoutANumber) {
   EXPECT_BAD_INPUT(sgd_from_table(selected_sgd_table(), "cheese", "table.csv"), "table.csv");
   EXPECT_BAD_INPUT(sgd_from_table("material,rhoD_r\nx,1.2y\n", "x", "table.csv"), "rhoD_r");

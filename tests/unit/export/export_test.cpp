@@ -1,11 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "processing/export/export_model.h"
 #include "processing/export/refit.h"
 #include "processing/image/raster_file.h"
+#include "rig/whole_file.h"
 #include "tests/unit/bad_input_matcher.h"
 #include "tests/unit/plain_models.h"
 #include "tests/unit/temporary_folder.h"
@@ -72,10 +74,10 @@ Energies mean_energies(const Brdf& brdf, const GltfMaterial& material, double fr
   return mean;
 }
 
-// What is guaranteed: a Lafortune lobe's light comes back within 10 % as a mean over the viewer's angles that are fitted, up to 45 degrees. Beyond, where a
-// Lafortune lobe dims and a microfacet lobe brightens, there is too much of it; how much at most is stated and held, too.
+// What is guaranteed: a Lafortune lobe's light comes back within 5 % as a mean over the viewer's angles that are fitted, up to 45 degrees.
+// Beyond, where a Lafortune lobe dims and a microfacet lobe grows, there is too much of it; how much at most is stated and held, too.
 TEST(Export, ALafortuneLobeKeepsItsEnergyWhereItIsFittedAndItsExcessBeyondIsBounded) {
-  constexpr double kWithinFitted = 0.10, kMostExcessBeyond = 0.40, kMostExcessOverall = 0.17;  // 0.32 to 0.37, 0.15 to 0.16
+  constexpr double kWithinFitted = 0.05, kMostExcessBeyond = 0.30, kMostExcessOverall = 0.15;  // 0.25 to 0.27, 0.09 to 0.13
   for (const double exponent : {10.0, 50.0, 300.0}) {
     const double peak = 0.3 * (exponent + 2.0) / (2.0 * std::numbers::pi);  // about 0.3 of the light
     const Brdf brdf = with_lobe(BrdfFamily::Lafortune, 0.08, std::log(peak), std::log(exponent));
@@ -103,6 +105,32 @@ TEST(Export, AMixtureIsFittedAsAWhole) {
   EXPECT_NEAR(material.f0[0], 0.2, 0.02);
 }
 
+TEST(Export, ASurfaceWithoutHighlightsHasNoneAtGrazingEither) {
+  const GltfMaterial matte = refitted(diffuse_brdf(0.2, 0.1, 0.05));
+  EXPECT_NEAR(matte.specular, 0.0, 1e-9);
+  EXPECT_NEAR(matte.base[1], 0.1 * std::numbers::pi, 1e-6);
+  const Eigen::Vector3d wi(std::sin(1.5), 0, std::cos(1.5)), wo(-std::sin(1.5), 0, std::cos(1.5));
+  EXPECT_NEAR(evaluate(matte, lobe_geometry(Eigen::Vector3d::UnitZ(), wi, wo))[0], 0.2, 1e-6);
+}
+
+TEST(Export, HighlightsRiseAtGrazingWhereTheBrdfsDoAndNotElsewhere) {
+  EXPECT_EQ(refitted(with_lobe(BrdfFamily::Ggx, 0.1, std::log(0.02), 2.0 * std::log(0.5))).specular, 1.0);
+  const GltfMaterial steady = refitted(with_lobe(BrdfFamily::Lafortune, 0.1, std::log(3.0), std::log(50.0)));
+  EXPECT_GT(steady.f0[0], 0.01);
+  EXPECT_DOUBLE_EQ(steady.specular, *std::max_element(steady.f0.begin(), steady.f0.end()));
+}
+
+TEST(Export, TexturesGiveBackAFaintHighlightWithinTheirSteps) {
+  // F0 of some 3 % that does not rise: 8 codes of the factor alone would leave it 6 % off.
+  const Model model = model_of(square_mesh(), 4, 4, with_lobe(BrdfFamily::Lafortune, 0.1, std::log(0.3), std::log(50.0)));
+  NoProgress quiet;
+  const GltfMaterial fitted = refitted(model.materials.front().basis.front()), texel = decoded_texel(refit_maps(model, quiet), 1, 1);
+  EXPECT_LT(fitted.f0[0], 0.06);
+  EXPECT_LT(fitted.specular, 0.06);
+  EXPECT_NEAR(texel.f0[0], fitted.f0[0], 0.01 * fitted.f0[0]);
+  EXPECT_NEAR(texel.specular, fitted.specular, 1.0 / 255.0);
+}
+
 TEST(Export, TexturesHoldTheNearestMaterialBeyondTheSeam) {
   Model model = model_of(square_mesh(), 4, 1, diffuse_brdf(0.1, 0.1, 0.1));
   model.material = {0, Model::kNoMaterial, Model::kNoMaterial, Model::kNoMaterial};
@@ -126,6 +154,31 @@ TEST(Export, GltfStatesTheLossAndItsBufferIsWhole) {
   EXPECT_EQ(document.at("accessors").at(0).at("count"), model.mesh.positions.size());
   EXPECT_EQ(read_raster(out / "base.png").code_values.at(1, 1, 0), std::round(255.0f * refit_maps(model, quiet).base.at(1, 1, 0)));
   EXPECT_THROW(export_model(model, ExportFormat::Gltf, out, quiet), BadInput) << "nothing is overwritten";
+}
+
+class StatedLoss : public testing::TestWithParam<std::pair<ExportFormat, const char*>> {};
+
+TEST_P(StatedLoss, StandsInTheFile) {
+  const TemporaryFolder folder;
+  NoProgress quiet;
+  const Model model = model_of(sphere_mesh(12, 6), 4, 4, with_lobe(BrdfFamily::Lafortune, 0.1, std::log(2.0), std::log(50.0)));
+  const ConversionLoss loss = export_model(model, GetParam().first, folder / "out", quiet);
+  std::string text = read_whole_file(folder / "out" / GetParam().second);
+  text.erase(std::remove(text.begin(), text.end(), ' '), text.end());  // JSON with and without blanks
+  EXPECT_NE(text.find("\"psnr_db\":" + nlohmann::json(loss.error.psnr_db).dump()), std::string::npos) << text.substr(0, 2000);
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, StatedLoss,
+                         testing::Values(std::pair(ExportFormat::Blender, "scene.json"), std::pair(ExportFormat::Materialx, "model.mtlx"),
+                                         std::pair(ExportFormat::Mitsuba, "scene.xml"), std::pair(ExportFormat::Maps, "maps.json")));
+
+TEST(Export, AFolderThatCannotBeMadeIsNamedBeforeTheWork) {
+  const TemporaryFolder folder;
+  write_whole_file(folder / "file", "");
+  NoProgress quiet;
+  const Model model = model_of(square_mesh(), 4, 4, diffuse_brdf(0.1, 0.1, 0.1));
+  EXPECT_BAD_INPUT(export_model(model, ExportFormat::Gltf, folder / "file/below", quiet), "below", "a folder that can be written to");
+  EXPECT_BAD_INPUT(export_format_from_string("ply"), "ply", "mitsuba");
 }
 
 }  // namespace

@@ -138,7 +138,7 @@ TEST(ExportedMaps, EveryMapIsNamedAndHoldsItsNumbers) {
     const double low = map.at("png_zero"), step = (map.at("png_full_scale").get<double>() - low) / 255.0;
     EXPECT_NEAR(low + step * png.code_values.at(3, 2), exr.at(3, 2), 0.5 * step + 1e-6) << names.back();
   }
-  const std::vector<std::string> expected = {"base", "specular", "roughness", "metallic", "normal_world", "normal_tangent",
+  const std::vector<std::string> expected = {"base", "specular", "specular_factor", "roughness", "metallic", "normal_world", "normal_tangent",
                                              "cluster", "weight_0", "weight_1", "uncertainty", "samples"};
   EXPECT_EQ(names, expected);
   EXPECT_EQ(read_exr_colour(folder / "maps/cluster.exr").at(0, 0), 65535.0f);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "processing/model/image_error.h"
+#include "processing/evaluation/image_error.h"
 #include "processing/model/render_view.h"
 #include "processing/render/surface_points.h"
 #include "tests/unit/bad_input_matcher.h"

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <numbers>
+#include <regex>
+#include <set>
 
 #include "processing/image/tone_map.h"
 #include "processing/report/html.h"
@@ -106,13 +109,80 @@ TEST_F(ModelReport, NamesTheNearestKnownMaterialAndSaysHowNearItIs) {
   NoProgress progress;
   ReportSubject subject{"bird", model_};
   subject.known = known;
+  subject.known_source = "the blackboard & chalk database";
   const std::string html = model_report(subject, progress);
   EXPECT_THAT(html, HasSubstr("hardly to be told apart"));
   EXPECT_THAT(html, HasSubstr("same (0)"));
+  EXPECT_THAT(html, HasSubstr("beside the 2 of the blackboard &amp; chalk database"));
   EXPECT_THAT(html, HasSubstr("chalk &lt;white&gt; ("));
   const auto nearest = nlohmann::json::parse(report_json(subject)).at("nearest_materials");
   EXPECT_EQ(nearest[0][0].at("name"), "same");
   EXPECT_EQ(nearest[0][0].at("distance"), 0.0);
+}
+
+TEST_F(ModelReport, SaysHowFarNormalsWereTurnedAndHowSurely) {
+  EXPECT_THAT(page(false), Not(HasSubstr("raking light"))) << "no fitted normals, nothing to show";
+  EXPECT_TRUE(nlohmann::json::parse(report_json({"bird", model_})).at("normals").is_null());
+
+  model_ = model_of(square_mesh(), 4, 4, diffuse_brdf(0.125, 0.2, 0.3));
+  model_.before_normals = ReflectanceLayer{model_.materials, model_.material, model_.weights, {}};
+  model_.samples.data[0] = 0.0f;  // not measured: takes no part
+  model_.normal_sigma = Image(4, 4, 1, 0.05f);
+  const double tilt_rad = 0.2;
+  for (std::size_t texel = 0; texel < 16; ++texel) {  // the mesh's own in the first six, turned in the others
+    const double angle = texel < 6 ? 0.0 : tilt_rad;
+    model_.normal.data[3 * texel] = static_cast<float>(std::sin(angle));
+    model_.normal.data[3 * texel + 2] = static_cast<float>(std::cos(angle));
+  }
+  const auto normals = nlohmann::json::parse(report_json({"bird", model_})).at("normals");
+  constexpr double kFloat_deg = 1e-4;  // normals are kept in single precision
+  EXPECT_EQ(normals.at("texels_measured"), 15);
+  EXPECT_EQ(normals.at("texels_on_the_meshs_normal"), 5);
+  EXPECT_NEAR(normals.at("tilt_against_mesh_deg").at("median"), tilt_rad * 180.0 / std::numbers::pi, kFloat_deg);
+  EXPECT_NEAR(normals.at("sigma_deg").at("nine_tenths"), 0.05 * 180.0 / std::numbers::pi, kFloat_deg);
+  const std::string html = page(false);
+  EXPECT_THAT(html, HasSubstr("raking light"));
+  EXPECT_THAT(html, HasSubstr("Of 15 measured texels, 5 kept"));
+  EXPECT_THAT(html, HasSubstr("20° and more"));
+}
+
+// Every cell of every table that is one number, with or without a unit. The first column names the rows.
+std::vector<std::string> numbers_in_tables(const std::string& html) {
+  std::vector<std::string> numbers;
+  static const std::regex kRow("<tr>((?:<td>[^<]*</td>)+)</tr>"), kCell("<td>([^<]*)</td>"),
+      kNumber("^(-?[0-9.]+(?:e[-+][0-9]+)?)(?: ?(?:%|°|dB|s|mm|px|m|stops))?$");
+  for (std::sregex_iterator row(html.begin(), html.end(), kRow), end; row != end; ++row) {
+    const std::string cells = (*row)[1];
+    int column = 0;
+    for (std::sregex_iterator cell(cells.begin(), cells.end(), kCell); cell != end; ++cell, ++column) {
+      const std::string text = (*cell)[1];
+      std::smatch match;
+      if (column > 0 && std::regex_match(text, match, kNumber)) numbers.push_back(match[1]);
+    }
+  }
+  return numbers;
+}
+
+// As the page may write it: by html::number, plain or as percent.
+void collect_numbers(const nlohmann::json& data, std::set<std::string>& written) {
+  if (data.is_structured()) {
+    for (const auto& item : data) collect_numbers(item, written);
+  } else if (data.is_number()) {
+    for (const int digits : {2, 3, 4, 8}) {
+      for (const double unit : {1.0, 100.0}) written.insert(html::number(unit * data.get<double>(), digits));
+    }
+  }
+}
+
+TEST_F(ModelReport, EveryNumberOfItsTablesIsInItsJson) {
+  const std::string html = page(true);
+  const std::vector<std::string> numbers = numbers_in_tables(html);
+  EXPECT_GE(numbers.size(), 20u);
+  std::set<std::string> written;
+  const std::string open = "<script type=\"application/json\" id=\"data\">";
+  const std::size_t start = html.find(open) + open.size();
+  collect_numbers(nlohmann::json::parse(html.substr(start, html.find("</script>") - start)), written);
+  for (const std::string& number : numbers) EXPECT_TRUE(written.count(number)) << number;
 }
 
 TEST_F(ModelReport, WithoutASessionTheModelAloneIsShown) {

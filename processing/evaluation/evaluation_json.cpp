@@ -1,7 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "processing/model/evaluate_model.h"
+#include "processing/evaluation/evaluate_model.h"
 
 namespace lumitexel {
 namespace {

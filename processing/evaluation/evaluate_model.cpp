@@ -1,10 +1,10 @@
-#include "processing/model/evaluate_model.h"
+#include "processing/evaluation/evaluate_model.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "drivers/error.h"
-#include "processing/model/render_view.h"
+#include "processing/evaluation/predicted_view.h"
 
 namespace lumitexel {
 namespace {
@@ -29,7 +29,7 @@ SumsByStage compare_view(const Model& model, const ViewRenderer& renderer, const
   std::vector<std::uint8_t> counted;
   for (const FitStage stage : kFitStages) {
     if (!holds_stage(model, stage)) continue;
-    const RenderedView rendered = renderer.render(view, {stage, 1});
+    const RenderedView rendered = predicted_view(renderer, view, stage);
     require_finite(view, rendered.radiance);
     if (counted.empty()) counted = object_pixels(photograph, rendered.hit);
     sums[index(stage)].add(rendered.radiance, photograph.radiance, counted);

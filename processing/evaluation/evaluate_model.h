@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "processing/calibration/calibrated_session.h"
-#include "processing/model/image_error.h"
+#include "processing/evaluation/image_error.h"
 #include "processing/model/model.h"
 #include "rig/progress.h"
 

@@ -1,4 +1,4 @@
-#include "processing/model/image_error.h"
+#include "processing/evaluation/image_error.h"
 
 #include <algorithm>
 #include <cmath>

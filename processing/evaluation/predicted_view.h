@@ -1,0 +1,13 @@
+// What a model predicts a photograph to be: light straight from the view's lamp, and, where the fit took light between surfaces out of its
+// samples, that light as well.
+#pragma once
+
+#include "processing/model/render_view.h"
+
+namespace lumitexel {
+
+// Rendered at pixel centres; light between surfaces, at the model's last stage only, from `paths` a pixel (about a percent of noise in
+// it at 16).
+RenderedView predicted_view(const ViewRenderer& renderer, const View& view, FitStage stage, int paths = 16);
+
+}  // namespace lumitexel

@@ -1,0 +1,45 @@
+// What a fit found out on its way, beside the model.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "processing/fit/fit_options.h"
+#include "processing/fit/outliers.h"
+#include "processing/fit/stage_errors.h"
+#include "processing/fit/stage_timer.h"
+#include "processing/normals/normals_worth.h"
+#include "processing/surface/lumitexel.h"
+
+namespace lumitexel {
+
+// Light between the object's surfaces.
+struct IndirectSummary {
+  double albedo = 0;              // largest of any triangle (indirect_bound.h)
+  double largest_bound = 0;       // of any lumitexel (indirect_bound.h)
+  std::size_t concerned = 0;      // lumitexels where it can matter
+  std::size_t samples = 0;        // of theirs, that were followed in the last round
+  double share = 0;               // of these samples' reflectance that came by way of other surfaces
+  std::vector<double> change;     // rms of what each round changed, over the rms of these samples; empty: not needed
+  std::size_t dropped_paths = 0;  // that were not finite
+};
+
+struct FitSummary {
+  std::size_t lumitexels = 0, samples = 0, unseen_triangles = 0, starved = 0;  // starved: lumitexels without samples
+  RejectionCounts rejected;
+  RejectedSamples unusable;          // gathered, but not finite or below the surface
+  ErrorModel error;                  // that the fit started from, or was given
+  ErrorSource errors = ErrorSource::Given;  // whose error models the materials have, never Auto
+  std::vector<std::size_t> texels_by_material, texels_before_normals;  // the second only where normals were fitted
+  std::vector<PriorChoice> prior;    // per material, of the last stage
+  StageError single, cluster, projection;
+  std::optional<StageError> pfa;     // if principal functions were asked for
+  std::optional<StageError> normal;  // if normals were fitted
+  std::optional<NormalsWorth> normals_worth;  // if left-out photographs were asked
+  std::optional<double> normal_sigma_scale;      // if normals were fitted (sigma_scale.h)
+  std::optional<IndirectSummary> indirect;       // if light between surfaces was looked for
+  Outliers outliers;                 // under the finished model
+  std::vector<StageCost> stages;
+};
+
+}  // namespace lumitexel

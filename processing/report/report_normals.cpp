@@ -1,0 +1,152 @@
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "processing/export/exported_normals.h"
+#include "processing/image/tone_map.h"
+#include "processing/report/html.h"
+#include "processing/report/report_sections.h"
+#include "processing/report/view_pictures.h"
+
+namespace lumitexel {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kUnmovedTilt_rad = 0.1 * kDegree;  // below it a normal is called the mesh's: far below any sigma
+constexpr double kFullTilt_deg = 20.0, kFullSigma_deg = 10.0;
+
+bool measured(const Model& model, std::size_t texel) {
+  return model.material[texel] != Model::kNoMaterial && model.samples.data[texel] > 0.0f;
+}
+
+// Angles in degrees; from both components, since the cosine of a small angle keeps few of its digits.
+double tilt_deg(const Image& tangent, std::size_t texel) {
+  const float* n = &tangent.data[3 * texel];
+  return std::atan2(std::hypot(n[0], n[1]), n[2]) / kDegree;
+}
+
+Json at_share(std::vector<double>& values, double share) {
+  if (values.empty()) return nullptr;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+Json shares_of(std::vector<double> values) {
+  return {{"median", at_share(values, 0.5)}, {"nine_tenths", at_share(values, 0.9)}, {"most", at_share(values, 1.0)}};
+}
+
+// The same surface without anything but its form: with the mesh's own normals, and the sigma of the fitted ones where the renderer looks
+// for the reflectance's.
+Model bare_form(const Model& model) {
+  Model form;
+  form.channels = model.channels;
+  form.mesh = model.mesh;
+  form.width = model.width;
+  form.height = model.height;
+  form.material = model.material;
+  form.normal = Image(model.width, model.height, 3);
+  form.uncertainty = model.normal_sigma;
+  form.samples = model.samples;
+  return form;
+}
+
+Eigen::Vector3d vector_at(const Image& image, int x, int y) { return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)}; }
+
+// White plaster under a light from the left, 20 degrees above the picture's plane. No shadows are cast.
+Image plaster(const Image& normal, const View& view) {
+  const Eigen::Matrix3d world_from_camera = view.camera_from_world.inverse().linear();
+  const Eigen::Vector3d towards_light =
+      world_from_camera * Eigen::Vector3d(-std::cos(20.0 * kDegree), 0.0, -std::sin(20.0 * kDegree));
+  constexpr double kAmbient = 0.04;
+  Image shown(normal.width, normal.height, 1, 1.0f);
+  for (int y = 0; y < shown.height; ++y) {
+    for (int x = 0; x < shown.width; ++x) {
+      const Eigen::Vector3d n = vector_at(normal, x, y);
+      if (!n.isZero()) shown.at(x, y) = static_cast<float>(kAmbient + (1.0 - kAmbient) * std::max(0.0, n.dot(towards_light)));
+    }
+  }
+  return tone_mapped(shown, 1.0);
+}
+
+// From near-white at 0 to red at `full`; white beside the object.
+template <typename Value>
+Image angles_shown(const Image& normal, double full, Value value_deg) {
+  Image shown(normal.width, normal.height, 3, 1.0f);
+  for (int y = 0; y < shown.height; ++y) {
+    for (int x = 0; x < shown.width; ++x) {
+      if (vector_at(normal, x, y).isZero()) continue;
+      const auto colour = false_colour(std::clamp(value_deg(x, y) / full, 0.0, 1.0));
+      std::copy(colour.begin(), colour.end(), &shown.at(x, y));
+    }
+  }
+  return shown;
+}
+
+std::string degrees(const Json& value) { return value.is_number() ? html::number(value.get<double>(), 2) + "°" : "–"; }
+
+std::string figure_with_scale(const Image& picture, const std::string& what, double full_deg, const std::string& caption) {
+  return "<div>" + html::figure(html::picture(picture, what), caption) +
+         html::colour_scale(false_colour(0.0), false_colour(1.0), "0°", html::number(full_deg) + "° and more") + "</div>";
+}
+
+std::string text_of(const Json& data) {
+  const auto count = [&](const char* key) { return html::number(data.at(key).get<double>(), 8); };
+  return "The mesh that the measurement began with is coarser than the photographs. From how each point brightens and darkens as the lamp moves, "
+         "its normal (the direction that the surface faces) was fitted, so that small relief shows that the mesh does not have. Of " +
+         count("texels_measured") + " measured texels, " + count("texels_on_the_meshs_normal") +
+         " kept the mesh's normal, to within " + html::number(kUnmovedTilt_rad / kDegree) + "°.";
+}
+
+}  // namespace
+
+Json normals_json(const Model& model) {
+  if (!has_normals(model)) return nullptr;
+  const ExportedNormals normals = export_normals(model);
+  std::vector<double> tilts, sigmas;
+  for (std::size_t texel = 0; texel < model.material.size(); ++texel) {
+    if (!measured(model, texel)) continue;
+    tilts.push_back(tilt_deg(normals.tangent, texel));
+    sigmas.push_back(model.normal_sigma.data[texel] / kDegree);
+  }
+  const auto unmoved = std::count_if(tilts.begin(), tilts.end(), [](double tilt) { return tilt * kDegree < kUnmovedTilt_rad; });
+  return {{"texels_measured", tilts.size()},
+          {"texels_on_the_meshs_normal", unmoved},
+          {"within_deg", kUnmovedTilt_rad / kDegree},
+          {"tilt_against_mesh_deg", shares_of(std::move(tilts))},
+          {"sigma_deg", shares_of(std::move(sigmas))}};
+}
+
+std::string normals_section(const ReportSubject& subject, const Json& data, const ViewRenderer& renderer, const View& view) {
+  if (!data.is_object()) return "";
+  const Model form = bare_form(subject.model);
+  const ViewRenderer form_renderer(form);
+  const Image before = form_renderer.render_aov(view, Aov::Normal), after = renderer.render_aov(view, Aov::Normal);
+  const Image sigma = form_renderer.render_aov(view, Aov::Sigma);
+  const Image tilt_picture = angles_shown(after, kFullTilt_deg, [&](int x, int y) {
+    const Eigen::Vector3d a = vector_at(before, x, y), b = vector_at(after, x, y);
+    return std::atan2(a.cross(b).norm(), a.dot(b)) / kDegree;
+  });
+  const Image sigma_picture = angles_shown(after, kFullSigma_deg, [&](int x, int y) { return sigma.at(x, y) / kDegree; });
+  const Json &tilt = data.at("tilt_against_mesh_deg"), &sigmas = data.at("sigma_deg");
+  return html::section(
+      "Fine relief: the normals", text_of(data),
+      "<div class=\"row two\">" +
+          html::figure(html::picture(plaster(before, view), "the mesh's normals under raking light"),
+                       "Before: the mesh's own normals, as white plaster under a raking light from the left. No shadows are cast.") +
+          html::figure(html::picture(plaster(after, view), "the fitted normals under raking light"),
+                       "After: the fitted normals, the same plaster and light.") +
+          "</div><div class=\"row two\">" +
+          figure_with_scale(tilt_picture, "tilt against the mesh", kFullTilt_deg,
+                            "How far each normal was turned away from the mesh's: half of the measured texels by at most " +
+                                degrees(tilt.at("median")) + ", nine tenths by at most " + degrees(tilt.at("nine_tenths")) + ".") +
+          figure_with_scale(sigma_picture, "sigma of the normals", kFullSigma_deg,
+                            "How uncertain the fitted normal is, one sigma per axis: half of the measured texels at most " +
+                                degrees(sigmas.at("median")) + ", nine tenths at most " + degrees(sigmas.at("nine_tenths")) + ".") +
+          "</div>\n");
+}
+
+}  // namespace lumitexel

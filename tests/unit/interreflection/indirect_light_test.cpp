@@ -1,0 +1,133 @@
+#include "processing/interreflection/indirect_light.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <limits>
+
+#include "processing/fit/interreflection_stage.h"
+#include "tests/unit/interreflection/bowl.h"
+
+namespace lumitexel {
+namespace {
+
+constexpr double kAlbedo = 0.7;
+
+Model bowl_model(double albedo) { return model_of(bowl_mesh(), 96, 48, diffuse_brdf(albedo / M_PI, albedo / M_PI, albedo / M_PI)); }
+
+CalibratedSession bowl_session() {
+  CalibratedSession session;
+  session.views = {bowl_view()};
+  session.mesh = bowl_mesh();
+  return session;
+}
+
+double mean(const std::vector<float>& values) {
+  double sum = 0.0;
+  for (const float value : values) sum += static_cast<double>(value);
+  return sum / static_cast<double>(values.size());
+}
+
+TEST(IndirectLight, IsWhatTheBowlsClosedFormSays) {
+  const CalibratedSession session = bowl_session();
+  const Model model = bowl_model(kAlbedo);
+  const LumitexelSet lumitexels = bowl_lumitexels(kAlbedo, 1);
+  const std::vector<bool> all(lumitexels.size(), true);
+  for (const int bounces : {1, 2, 3}) {
+    const IndirectLight light = indirect_light(session, lumitexels, all, model, FitStage::Projection, {bounces, 256});
+    const double expected = kAlbedo / M_PI * bowl_indirect_share(kAlbedo, bounces);
+    EXPECT_NEAR(mean(light.reflectance[0]), expected, 0.01 * expected) << bounces;  // 16,000 paths, and a bowl of flat triangles
+    // Each sample's own mean lies about it as its variance says.
+    double chi = 0.0;
+    for (std::size_t k = 0; k < light.reflectance[0].size(); ++k) {
+      chi += std::pow(static_cast<double>(light.reflectance[0][k]) - expected, 2) / static_cast<double>(light.variance[0][k]);
+    }
+    EXPECT_LT(std::sqrt(chi / static_cast<double>(light.reflectance[0].size())), 1.3) << bounces;
+  }
+}
+
+TEST(IndirectLight, IsFollowedOnlyWhereItIsWanted) {
+  const LumitexelSet lumitexels = bowl_lumitexels(kAlbedo, 1);
+  std::vector<bool> wanted(lumitexels.size(), false);
+  wanted[5] = true;
+  const IndirectLight light = indirect_light(bowl_session(), lumitexels, wanted, bowl_model(kAlbedo), FitStage::Projection, {1, 16});
+  EXPECT_EQ(light.samples, 1u);
+  for (std::size_t k = 0; k < light.reflectance[0].size(); ++k) EXPECT_EQ(light.reflectance[0][k] > 0.0f, k / 3 == 5) << k;
+}
+
+TEST(IndirectLight, HasTheSameBitsForAnyNumberOfThreads) {
+  const CalibratedSession session = bowl_session();
+  const Model model = bowl_model(kAlbedo);
+  LumitexelSet lumitexels = bowl_lumitexels(kAlbedo, 1);
+  lumitexels.tiles.insert(lumitexels.tiles.end(), 3, lumitexels.tiles.front());
+  // Tiles are full but for the last one, where their numbers count.
+  const std::vector<bool> all(4 * LumitexelTile::kCapacity, true);
+  std::vector<IndirectLight> results;
+  for (const std::size_t threads : {1, 2, 4}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    results.push_back(indirect_light(session, lumitexels, all, model, FitStage::Projection, {2, 16}));
+  }
+  for (const IndirectLight& other : results) EXPECT_EQ(other.reflectance, results[0].reflectance);
+}
+
+TEST(IndirectRemoval, LeavesWhatALampAloneBringsOnceTheModelIsRight) {
+  const CalibratedSession session = bowl_session();
+  LumitexelSet lumitexels = bowl_lumitexels(kAlbedo, 3);
+  const LumitexelSet straight = bowl_lumitexels(kAlbedo, 0);
+  InterreflectionOptions options;
+  options.light = {3, 256};
+  IndirectRemoval removal(session, lumitexels, RayScene(session.mesh), bowl_model(kAlbedo), options);
+  ASSERT_TRUE(removal.can_matter());
+  EXPECT_TRUE(removal.remove(bowl_model(kAlbedo), FitStage::Projection));
+  EXPECT_NEAR(mean(lumitexels.tiles[0].reflectance), mean(straight.tiles[0].reflectance), 0.01 * mean(straight.tiles[0].reflectance));
+  // By the same model nothing changes any more.
+  const std::vector<float> before = lumitexels.tiles[0].reflectance;
+  EXPECT_FALSE(removal.remove(bowl_model(kAlbedo), FitStage::Projection));
+  EXPECT_EQ(lumitexels.tiles[0].reflectance, before);
+  EXPECT_EQ(removal.summary().change.back(), 0.0);
+}
+
+// The albedo by which the lamp's light explains what is left: what a fit does, in one number.
+double refitted_albedo(const LumitexelSet& lumitexels, const LumitexelSet& unit) {
+  return mean(lumitexels.tiles[0].reflectance) / mean(unit.tiles[0].reflectance);
+}
+
+TEST(IndirectRemoval, RoundByRoundTheTrueAlbedoIsFound) {
+  const CalibratedSession session = bowl_session();
+  LumitexelSet lumitexels = bowl_lumitexels(kAlbedo, 6);
+  const LumitexelSet unit = bowl_lumitexels(1.0, 0);
+  InterreflectionOptions options;
+  options.light = {6, 64};
+  double albedo = refitted_albedo(lumitexels, unit);
+  EXPECT_GT(albedo, 1.2 * kAlbedo);  // taken for the lamp's, the light between surfaces makes it a fifth too bright
+  IndirectRemoval removal(session, lumitexels, RayScene(session.mesh), bowl_model(std::min(0.95, albedo)), options);
+  int rounds = 0;
+  while (removal.remove(bowl_model(std::min(0.95, albedo)), FitStage::Projection) && ++rounds < 12) albedo = refitted_albedo(lumitexels, unit);
+  EXPECT_NEAR(albedo, kAlbedo, 0.01);
+  EXPECT_LT(rounds, 12);
+}
+
+TEST(IndirectRemoval, SaysNoOnAConvexObjectAndTouchesNothing) {
+  CalibratedSession session;
+  session.views = {bowl_view()};
+  session.mesh = sphere_mesh(48, 24);
+  LumitexelSet lumitexels = bowl_lumitexels(kAlbedo, 1);
+  for (Eigen::Vector3d& p : lumitexels.tiles[0].position) p = -p.normalized() * 0.999;  // of the sphere's upper side
+  const std::vector<float> before = lumitexels.tiles[0].reflectance;
+  const Model model = model_of(session.mesh, 48, 24, diffuse_brdf(0.3, 0.3, 0.3));
+  IndirectRemoval removal(session, lumitexels, RayScene(session.mesh), model, {});
+  EXPECT_FALSE(removal.can_matter());
+  EXPECT_EQ(removal.summary().largest_bound, 0.0);
+  EXPECT_TRUE(removal.summary().change.empty());
+  EXPECT_EQ(lumitexels.tiles[0].reflectance, before);
+}
+
+TEST(IndirectRemoval, SaysNoInABlackBowl) {
+  const CalibratedSession session = bowl_session();
+  LumitexelSet lumitexels = bowl_lumitexels(0.01, 1);
+  const IndirectRemoval removal(session, lumitexels, RayScene(session.mesh), bowl_model(0.01), {});
+  EXPECT_FALSE(removal.can_matter());
+}
+
+}  // namespace
+}  // namespace lumitexel
