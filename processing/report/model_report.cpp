@@ -49,6 +49,7 @@ std::string model_report(const ReportSubject& subject, Progress& progress) {
                           "--session to see them beside their re-renderings.",
                           "");
   }
+  body += subject.viewer;
   body += stage_section(data.at("stages"), provenance);
   if (compared) body += photograph_error_section(*subject.evaluation);
   body += material_section(subject, renderer);

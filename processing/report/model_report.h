@@ -24,6 +24,7 @@ struct ReportSubject {
   std::vector<PhotographExposure> exposures{};      // of the session's photographs; the page says nothing of exposures without them
   std::span<const KnownMaterial> known{};  // measured materials to name the nearest of
   std::string known_source{};               // where they are from, "the … database"
+  std::string viewer{};                    // a section with the interactive view (viewer/viewer_section.h); empty: none
 };
 
 // The page. Every number on it is also in its <script type="application/json" id="data">: {"summary": the sentences on top,

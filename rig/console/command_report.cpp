@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "processing/report/model_report.h"
+#include "processing/report/viewer/viewer_section.h"
 #include "rig/console/command.h"
 #include "rig/console/input_folder.h"
 #include "rig/whole_file.h"
@@ -15,6 +16,7 @@ namespace fs = std::filesystem;
 
 struct ReportSettings {
   std::string model, session, out;
+  bool without_viewer = false;
 };
 
 std::string title_of(const fs::path& model) {
@@ -58,6 +60,7 @@ CommandResult report_command(const ReportSettings& settings, CommandContext& con
     subject.known = known;
     subject.known_source = "the MERL database of measured materials, as fitted by Bagher, Soler and Holzschuch (2012)";
   }
+  if (!settings.without_viewer) subject.viewer = viewer_section(viewer_page(subject.name, model));
   const fs::path out = settings.out.empty() ? fs::path(settings.model) / "report.html" : fs::path(settings.out);
   const std::string page = model_report(subject, context.progress);
   write_whole_file(out, page);
@@ -79,6 +82,8 @@ void add_report_command(CLI::App& app, CommandAction& action) {
   command->add_option("MODEL", settings->model, "Folder of the model")->required();
   command->add_option("--session", settings->session, "Session whose photographs are shown beside their re-renderings");
   command->add_option("--out,--page", settings->out, "HTML file to write (default: MODEL/report.html)");
+  command->add_flag("--without-viewer", settings->without_viewer,
+                    "Leave out the interactive view, which adds about as much to the page as lumitexel view writes (at most 16 MB)");
   command->callback([settings, &action] {
     action = [settings](CommandContext& context) { return report_command(*settings, context); };
   });

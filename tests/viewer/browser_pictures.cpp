@@ -118,6 +118,11 @@ json measured_by(const std::filesystem::path& page, const json& wanted) {
 
 bool has_chromium() { return std::system("command -v chromium >/dev/null 2>&1") == 0; }
 
+std::optional<json> browser_answer(const std::filesystem::path& page) {
+  const json answer = measured_by(page, json::object());
+  return answer.is_discarded() ? std::nullopt : std::optional<json>(answer);
+}
+
 std::optional<std::map<FitStage, BrowserPicture>> browser_pictures(const std::filesystem::path& page, const View& view,
                                                                    const std::vector<FitStage>& stages) {
   json wanted = view_json(view);

@@ -21,6 +21,9 @@ struct BrowserPicture {
 
 bool has_chromium();
 
+// What a page of the test's own writes into <pre id="measured">, JSON; nothing if it wrote none.
+std::optional<nlohmann::json> browser_answer(const std::filesystem::path& page);
+
 // By stage. The view: a camera without distortion, its principal point in the middle, and a point light without a pattern. Nothing if
 // the browser did not come up with it; `page` is the viewer's file.
 std::optional<std::map<FitStage, BrowserPicture>> browser_pictures(const std::filesystem::path& page, const View& view,

@@ -35,7 +35,8 @@ struct LumitexelRecords {
 };
 
 // Gathers as fit_model does and predicts with all that the model holds, on its own normals. The share and the scales need errors that
-// were given to the fit: those that a fit estimates it does not keep. Throws BadInput if the model was not fitted to this session.
+// were given to the fit: those that a fit estimates it does not keep. Where light between surfaces was taken out of the samples
+// (Model::indirect_bounces), `measured` still has it, and the scales are those of such samples. Throws BadInput if the model was not fitted to this session.
 LumitexelRecords lumitexel_records(const Model& model, const CalibratedSession& session, Progress& progress);
 
 // Root mean square of the residuals over a texel's samples and channels, 1/sr, by atlas index; -1 where it has none.

@@ -1,6 +1,8 @@
 // The files of page/ and three.js, as they were when the program was built; a null name ends the list.
 #pragma once
 
+#include <string>
+
 namespace lumitexel {
 
 struct PageFile {
@@ -8,5 +10,7 @@ struct PageFile {
   const char* text;
 };
 extern const PageFile kPageFiles[];
+
+std::string page_file(const std::string& name);  // throws Error if there is none
 
 }  // namespace lumitexel

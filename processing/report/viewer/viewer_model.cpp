@@ -95,6 +95,7 @@ json viewer_model_json(const Model& model) {
           {"box", {{"low", vector_json(box.low - box.centre())}, {"size", vector_json(box.high - box.low)}}},
           {"diagonal_m", (box.high - box.low).norm()},
           {"single", brdf_json(model.single)},
+          {"indirect_bounces", model.indirect_bounces},
           {"layers", layers_json(model)},
           {"stages", stages_json(model)}};
 }
@@ -109,6 +110,11 @@ void add_model_chunks(const Model& model, PackedChunks& chunks) {
   add_normals(model, texels, chunks);
   chunks.add("sigma", halves_of(model.uncertainty, texels));
   chunks.add("samples", halves_of(model.samples, texels));
+  if (model.indirect.channels == 2) {
+    std::vector<std::uint16_t> found;
+    for (const std::uint32_t texel : texels) found.push_back(half_bits(model.indirect.data[std::size_t{2} * texel + 1]));
+    chunks.add("indirect", found);
+  }
   if (has_normals(model)) chunks.add("normal_sigma", halves_of(model.normal_sigma, texels));
 }
 

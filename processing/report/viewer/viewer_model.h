@@ -24,10 +24,12 @@ MeshBox box_of(const Mesh& mesh);
 // Atlas indices y * width + x of the texels with a material.
 std::vector<std::uint32_t> textured_texels(const Model& model);
 
-// "channels", "atlas", "centre" (m, of the mesh's box), "box" ("low" about the centre, "size"), "diagonal_m", "single", and viewer_layers.h's "layers" and "stages".
+// "channels", "atlas", "centre" (m, of the mesh's box), "box" ("low" about the centre, "size"), "diagonal_m", "single", "indirect_bounces" (Model's), and
+// viewer_layers.h's "layers" and "stages".
 nlohmann::json viewer_model_json(const Model& model);
 // "positions", "normals", "texcoords", "triangles_low" and "_high" (of 32 bits), "textured" (by the atlas: 1 in textured_texels), those
-// of viewer_layers.h, "texel_normals", "sigma", "samples", and where normals were fitted "normal_sigma".
+// of viewer_layers.h, "texel_normals", "sigma", "samples", and where normals were fitted "normal_sigma"; "indirect" (the share
+// that was found) where light between surfaces was looked for.
 void add_model_chunks(const Model& model, PackedChunks& chunks);
 
 // A map's values at the texels as half floats, a plane a channel.

@@ -19,13 +19,6 @@ constexpr const char* kScripts[] = {"data.js",     "bvh.js", "textures.js", "sky
                                     "texel_table.js", "samples.js", "sample_table.js", "ui.js",  "main.js"};
 constexpr const char* kShaders[] = {"brdf.glsl", "surface.glsl", "shade.glsl", "sky.glsl", "pixel.glsl"};
 
-std::string page_file(const std::string& name) {
-  for (const PageFile* file = kPageFiles; file->name != nullptr; ++file) {
-    if (name == file->name) return file->text;
-  }
-  throw Error("viewer: the page's file " + name + " is not in the program");
-}
-
 void replace(std::string& text, const std::string& key, const std::string& value) {
   const std::string mark = "{{" + key + "}}";
   const std::size_t at = text.find(mark);
@@ -52,6 +45,13 @@ std::string inline_json(const std::string& json) {
 }
 
 }  // namespace
+
+std::string page_file(const std::string& name) {
+  for (const PageFile* file = kPageFiles; file->name != nullptr; ++file) {
+    if (name == file->name) return file->text;
+  }
+  throw Error("viewer: the page's file " + name + " is not in the program");
+}
 
 ViewerPage viewer_page(const std::string& title, const Model& model, const ViewerSamples* samples, const Image* given_sky) {
   PackedChunks chunks;

@@ -1,6 +1,7 @@
 // The lobes of processing/brdf (lafortune.cpp, ggx.cpp, ward.cpp) in single precision, and the table of BRDFs that they are read from:
-// a row a BRDF; texel 0 diffuse and number of lobes, then two for every lobe and channel:
-// (strength, shape, mirror, retro), (grazing, family, 1 where the shape is that of the channel before, 1 where the lobe is off).
+// a row a BRDF; texel 0 diffuse and number of entries, then two for every entry, which is what of a lobe has one shape:
+// strengths of the channels and family + 4, 8, 16 for the channels that are on; (shape, mirror, retro, grazing).
+// Software renderers compute all sides of a branch, so a family that no BRDF is of (HAS_...) is left out of the program.
 uniform highp sampler2D basisMap;
 
 struct Geometry { float cosI, cosO, mirrorGap, retroGap, across2; };
@@ -25,9 +26,9 @@ float logOneMinus(float x) {
 }
 
 // x: gain, y: offset.
-vec2 lafortune(vec4 a, vec4 b, Geometry g) {
-  float belowOne = a.z * g.mirrorGap + a.w * g.retroGap + b.x * g.cosI * g.cosO;
-  return belowOne >= 1.0 ? vec2(0.0) : vec2(exp(a.y * logOneMinus(belowOne)), 0.0);
+vec2 lafortune(vec4 shape, Geometry g) {
+  float belowOne = shape.y * g.mirrorGap + shape.z * g.retroGap + shape.w * g.cosI * g.cosO;
+  return belowOne >= 1.0 ? vec2(0.0) : vec2(exp(shape.x * logOneMinus(belowOne)), 0.0);
 }
 
 vec2 ggx(float alpha, Geometry g) {
@@ -45,17 +46,30 @@ vec2 ward(float alpha, Geometry g) {
   return vec2(exp(-g.across2 / (alpha2 * along2)) / (3.14159265 * alpha2) * (g.across2 + along2) / along2 / along2, 0.0);
 }
 
+vec2 lobe(int family, vec4 shape, Geometry g) {
+#if HAS_LAFORTUNE
+  if (family == 0) return lafortune(shape, g);
+#endif
+#if HAS_GGX
+  if (family == 1) return ggx(shape.x, g);
+#endif
+#if HAS_WARD
+  if (family == 2) return ward(shape.x, g);
+#endif
+  return vec2(0.0);
+}
+
 // f, 1/sr; 0 if either direction is below the surface.
 vec3 evaluateBrdf(int row, Geometry g) {
   if (g.cosI <= 0.0 || g.cosO <= 0.0) return vec3(0.0);
   vec4 head = texelFetch(basisMap, ivec2(0, row), 0);
   vec3 f = head.rgb;
-  vec2 terms = vec2(0.0);
-  int entries = 3 * int(head.a);
+  int entries = int(head.a);
   for (int i = 0; i < entries; ++i) {
-    vec4 a = texelFetch(basisMap, ivec2(1 + 2 * i, row), 0), b = texelFetch(basisMap, ivec2(2 + 2 * i, row), 0);
-    if (b.z == 0.0) terms = b.y == 0.0 ? lafortune(a, b, g) : b.y == 1.0 ? ggx(a.y, g) : ward(a.y, g);
-    if (b.w == 0.0) f[i % 3] += a.x * terms.x + terms.y;
+    vec4 strength = texelFetch(basisMap, ivec2(1 + 2 * i, row), 0), shape = texelFetch(basisMap, ivec2(2 + 2 * i, row), 0);
+    int code = int(strength.w);
+    vec2 terms = lobe(code & 3, shape, g);
+    f += strength.rgb * terms.x + vec3((ivec3(code) >> ivec3(2, 3, 4)) & 1) * terms.y;
   }
   return f;
 }

@@ -21,6 +21,7 @@ class Renderer {
     if (context === null) throw new Error("this browser has no WebGL 2");
     this.gl = new THREE.WebGLRenderer({ canvas, context });
     this.gl.extensions.get("EXT_color_buffer_float");
+    this.gl.autoClear = false;
     this.data = data;
     this.camera = new THREE.PerspectiveCamera();
     this.numbers = this.target(THREE.UnsignedByteType);
@@ -33,6 +34,7 @@ class Renderer {
     this.lumitexels = page.samples ? new Lumitexels(data) : null;
     this.triangles = this.triangleScene();
     this.screen = this.screenScene();
+    this.background = this.backgroundScene();
     this.mean = this.meanScene();
     this.setSize(1, 1);
   }
@@ -64,27 +66,63 @@ class Renderer {
 
   screenScene() {
     const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
+    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0]), 3));
     const { triangleMap, nodeMap, nodeCount } = this.mesh, { basisMap, colourColumn } = this.basis, { normalMap, figureMap } = this.atlas.textures;
     const values = {
       triangleMap, nodeMap, nodeCount, basisMap, colourColumn, normalMap, figureMap, weightMap: null, materialMap: null, triangleNumberMap: this.numbers.texture,
-      surfaceOffset: 1e-5 * page.diagonal_m, atlasSize: new THREE.Vector2(page.atlas.width, page.atlas.height), clusterRow: 0,
-      firstRow: 0, rowsPerMaterial: 0, rowCount: 0, weighted: false, texelNormals: true, shadows: true, exposure: 1, figureScale: 1, show: 0,
+      extent: new THREE.Vector4(-1, -1, 1, 1), surfaceOffset: 1e-5 * page.diagonal_m, atlasSize: new THREE.Vector2(page.atlas.width, page.atlas.height), clusterRow: 0,
+      firstRow: 0, rowsPerMaterial: 0, rowCount: 0, weighted: false, texelNormals: true, shadows: true, exposure: 1, figureScale: 1,
       skyMap: this.sky.skyMap, aliasMap: this.sky.aliasMap, skySize: [page.sky.width, page.sky.height], skyTurn: 0, sumMap: null, pass: 0, jitter: new THREE.Vector2(),
       eye: new THREE.Vector3(), rightward: new THREE.Vector3(), upward: new THREE.Vector3(), forward: new THREE.Vector3(),
       pictureSize: new THREE.Vector2(), focal: 1, light: new THREE.Vector3(), intensity: new THREE.Vector3(),
     };
     this.uniforms = {};
     for (const [name, value] of Object.entries(values)) this.uniforms[name] = { value };
+    this.materials = {};
+    return this.scene(geometry, this.materialFor("radiance"));
+  }
+
+  // The program that draws one of kShow, made when it is first asked for.
+  materialFor(show) {
+    if (!this.materials[show]) {
+      const defines = { SHOW: kShow[show] }, sky = show === "sky" ? shaders["sky.glsl"] : "";
+      for (const family of kFamilies) defines["HAS_" + family.toUpperCase()] = this.basis.families.includes(family) ? 1 : 0;
+      const vertexShader = "uniform vec4 extent; void main() { gl_Position = vec4(mix(extent.xy, extent.zw, position.xy), 0.0, 1.0); }";
+      const fragmentShader = "precision highp sampler2DArray;\n" + kToneShader + shaders["brdf.glsl"] + shaders["surface.glsl"] + shaders["shade.glsl"] + sky + shaders["pixel.glsl"];
+      this.materials[show] = new THREE.ShaderMaterial({ defines, vertexShader, fragmentShader, uniforms: this.uniforms, depthTest: false, depthWrite: false, blending: THREE.NoBlending });
+    }
+    return this.materials[show];
+  }
+
+  // What lies around the object.
+  backgroundScene() {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
     const vertexShader = "void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }";
-    const fragmentShader = "precision highp sampler2DArray;\n" + kToneShader + shaders["brdf.glsl"] + shaders["surface.glsl"] + shaders["shade.glsl"] + shaders["sky.glsl"] + shaders["pixel.glsl"];
-    const material = new THREE.ShaderMaterial({ vertexShader, fragmentShader, uniforms: this.uniforms, depthTest: false, depthWrite: false, blending: THREE.NoBlending });
-    return this.scene(geometry, material);
+    const fragmentShader = `${kToneShader}
+      uniform bool coloured;
+      uniform vec4 plain;
+      void main() { gl_FragColor = coloured ? vec4(srgb(kBackground), 1.0) : plain; }`;
+    this.backgroundUniforms = { coloured: { value: true }, plain: { value: new THREE.Vector4() } };
+    return this.scene(geometry, new THREE.ShaderMaterial({ vertexShader, fragmentShader, uniforms: this.backgroundUniforms, depthTest: false, depthWrite: false, blending: THREE.NoBlending }));
+  }
+
+  // The part of the screen that the mesh's box fills, in [-1, 1], with two pixels to spare; all of it with the box around the camera.
+  setExtent() {
+    const { low, size } = page.box, from = [1, 1], to = [-1, -1];
+    for (let corner = 0; corner < 8; ++corner) {
+      const at = new THREE.Vector3(...low.map((start, k) => start + size[k] * (corner >> k & 1)));
+      const inView = at.clone().applyMatrix4(this.camera.matrixWorldInverse);
+      if (inView.z > -this.camera.near) return this.uniforms.extent.value.set(-1, -1, 1, 1);
+      at.project(this.camera);
+      [at.x, at.y].forEach((value, k) => { from[k] = Math.min(from[k], value); to[k] = Math.max(to[k], value); });
+    }
+    const spare = [4 / this.width, 4 / this.height], inside = (value) => Math.max(-1, Math.min(1, value));
+    return this.uniforms.extent.value.set(...from.map((value, k) => inside(value - spare[k])), ...to.map((value, k) => inside(value + spare[k])));
   }
 
   // The mean of the passes so far, as drawn on the screen.
   meanScene() {
-    const geometry = this.screen.children[0].geometry;
     this.meanUniforms = { sumMap: { value: null }, passes: { value: 1 }, exposure: { value: 1 } };
     const vertexShader = "void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }";
     const fragmentShader = `uniform highp sampler2D sumMap;
@@ -94,7 +132,7 @@ class Renderer {
         vec4 mean = texelFetch(sumMap, ivec2(gl_FragCoord.xy), 0) / passes;
         gl_FragColor = vec4(srgb(exposure * mean.rgb + (1.0 - mean.a) * kBackground), 1.0);
       }`;
-    return this.scene(geometry, new THREE.ShaderMaterial({ vertexShader, fragmentShader, uniforms: this.meanUniforms, depthTest: false, depthWrite: false, blending: THREE.NoBlending }));
+    return this.scene(this.background.children[0].geometry, new THREE.ShaderMaterial({ vertexShader, fragmentShader, uniforms: this.meanUniforms, depthTest: false, depthWrite: false, blending: THREE.NoBlending }));
   }
 
   setSize(width, height) {
@@ -122,6 +160,7 @@ class Renderer {
     this.camera.up.copy(up);
     this.camera.lookAt(target);
     this.camera.updateMatrixWorld();
+    this.setExtent();
   }
 
   // A stage of page.stages; its own normals with it.
@@ -141,12 +180,16 @@ class Renderer {
   }
 
   draw(show, target = null) {
-    this.uniforms.show.value = kShow[show];
+    this.screen.children[0].material = this.materialFor(show);
     this.gl.setRenderTarget(this.numbers);
     this.gl.setClearColor(0x000000, 0);
     this.gl.clear();
     this.gl.render(this.triangles, this.camera);
+    const plain = { texel: [-1, -1, -1, 0], linear: [-1, -1, -1, 0], figures: [-1, -1, -1, 0], sky: [0, 0, 0, 0] }[show];
+    this.backgroundUniforms.coloured.value = !plain;
+    if (plain) this.backgroundUniforms.plain.value.set(...plain);
     this.gl.setRenderTarget(target);
+    this.gl.render(this.background, this.camera);
     this.gl.render(this.screen, this.camera);
     this.gl.setRenderTarget(null);
   }

@@ -9,9 +9,10 @@ uniform int firstRow, rowsPerMaterial, rowCount;  // of basisMap: of the stage's
 uniform bool weighted, texelNormals, shadows;
 uniform vec3 light, intensity;  // m, W/sr
 uniform float exposure, figureScale;
-uniform int show, clusterRow, colourColumn;
+uniform int clusterRow, colourColumn;
 
 const int kRadiance = 0, kNormals = 1, kClusters = 2, kSigma = 3, kSamples = 4, kResidual = 5, kNormalSigma = 6, kTexel = 7, kLinear = 8, kFigures = 9, kSky = 10;
+const int show = SHOW;
 
 struct Texels { ivec2 at[4]; float weight[4]; vec4 normal[4]; };
 
@@ -47,13 +48,12 @@ vec3 reflectance(ivec2 at, Geometry g) {
   int material = materialAt(at);
   if (material < 0) return vec3(0.0);
   int row = firstRow + rowsPerMaterial * material;
-  if (!weighted) return evaluateBrdf(row, g);
   vec3 sum = vec3(0.0);
-  vec4 weights = vec4(0.0);
-  for (int k = 0; k < rowCount; ++k) {
-    if (k % 4 == 0) weights = texelFetch(weightMap, ivec3(at, k / 4), 0);
-    float weight = weights[k % 4];
-    if (weight > 0.0) sum += weight * evaluateBrdf(row + k, g);
+  for (int first = 0; first < rowCount; first += 4) {
+    vec4 weights = weighted ? texelFetch(weightMap, ivec3(at, first / 4), 0) : vec4(1.0, 0.0, 0.0, 0.0);
+    for (int k = 0; k < min(4, rowCount - first); ++k) {
+      if (weights[k] > 0.0) sum += weights[k] * evaluateBrdf(row + first + k, g);
+    }
   }
   return sum;
 }
@@ -62,15 +62,13 @@ vec3 radiance(Point p, Texels t) {
   vec3 towards = light - p.position;
   float distance2 = dot(towards, towards);
   vec3 wi = towards * inversesqrt(distance2), wo = normalize(eye - p.position), sum = vec3(0.0);
-  bool askedForShadow = !shadows;
   for (int k = 0; k < 4; ++k) {
     if (t.weight[k] == 0.0) continue;
     Geometry g = geometryOf(normalAt(t, k, p), wi, wo);
     if (g.cosI <= 0.0 || g.cosO <= 0.0) continue;
-    if (!askedForShadow && !seesLight(p, light)) return vec3(0.0);
-    askedForShadow = true;
     sum += t.weight[k] * g.cosI * reflectance(t.at[k], g);
   }
+  if (shadows && sum != vec3(0.0) && !seesLight(p, light)) return vec3(0.0);
   return sum * intensity / distance2;
 }
 
@@ -117,6 +115,6 @@ vec4 pixel(Point p, Texels t) {
   if (show == kFigures) return figuresAt(t);
   if (hole || (show == kClusters && material < 0)) return vec4(0.25, 0.0, 0.0, 1.0);
   if (show == kClusters) return vec4(texelFetch(basisMap, ivec2(colourColumn, clusterRow + material), 0).rgb, 1.0);
-  float figure = figuresAt(t)[show - kSigma];
+  float figure = figuresAt(t)[clamp(show - kSigma, 0, 3)];
   return vec4(figure < 0.0 ? vec3(0.35) : heat(figure / figureScale), 1.0);
 }

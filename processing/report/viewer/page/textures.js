@@ -43,16 +43,35 @@ function aimOf(phi) {  // processing/brdf/lafortune_base.cpp
   return { mirror: phi >= 0 ? near : other, retro: phi >= 0 ? other : near, grazing };
 }
 
-function writeBrdf(brdf, table, at) {
-  const family = ["lafortune", "ggx", "ward"].indexOf(brdf.family), last = brdf.diffuse.length - 1;
-  for (let c = 0; c < 3; ++c) table[at + c] = brdf.diffuse[Math.min(c, last)];
-  table[at + 3] = brdf.lobes.length;
-  brdf.lobes.forEach((lobe, l) => {
+const kFamilies = ["lafortune", "ggx", "ward"];
+const lobeOf = (lobe, c, channels) => lobe[Math.min(c, channels - 1)];
+
+// What of a BRDF's lobes has one shape: { own, channels }, own one of the channels' lobes.
+function entriesOf(brdf) {
+  const entries = [], channels = brdf.diffuse.length;
+  for (const lobe of brdf.lobes) {
+    const first = entries.length;
     for (let c = 0; c < 3; ++c) {
-      const own = lobe[Math.min(c, last)], before = c > 0 ? lobe[Math.min(c - 1, last)] : null, aim = aimOf(own.aim);
-      const off = own.log_strength === null, same = before !== null && before.log_shape === own.log_shape && before.aim === own.aim;
-      table.set([off ? 0 : Math.exp(own.log_strength), Math.exp(own.log_shape), aim.mirror, aim.retro,
-                 aim.grazing, family, same ? 1 : 0, off ? 1 : 0], at + 4 + 8 * (3 * l + c));
+      const own = lobeOf(lobe, c, channels);
+      const same = entries.slice(first).find((entry) => entry.own.log_shape === own.log_shape && entry.own.aim === own.aim);
+      if (same) same.channels.push(c); else entries.push({ lobe, own, channels: [c] });
+    }
+  }
+  return entries;
+}
+
+function writeBrdf(brdf, table, at) {
+  const channels = brdf.diffuse.length, entries = entriesOf(brdf);
+  for (let c = 0; c < 3; ++c) table[at + c] = lobeOf(brdf.diffuse, c, channels);
+  table[at + 3] = entries.length;
+  entries.forEach(({ lobe, own, channels: shared }, e) => {
+    const aim = aimOf(own.aim), start = at + 4 + 8 * e;
+    table.set([0, 0, 0, kFamilies.indexOf(brdf.family), Math.exp(own.log_shape), aim.mirror, aim.retro, aim.grazing], start);
+    for (const c of shared) {
+      const strength = lobeOf(lobe, c, channels).log_strength;
+      if (strength === null) continue;
+      table[start + c] = Math.exp(strength);
+      table[start + 3] += 4 << c;
     }
   });
 }
@@ -61,7 +80,8 @@ function writeBrdf(brdf, table, at) {
 class BasisRows {
   constructor() {
     const all = [page.single, ...page.layers.flat().flatMap((m) => [m.brdf, ...m.projection_basis, ...m.basis])];
-    this.columns = 2 + 6 * Math.max(...all.map((brdf) => brdf.lobes.length));
+    this.columns = 2 + 2 * Math.max(...all.map((brdf) => entriesOf(brdf).length));
+    this.families = kFamilies.filter((family) => all.some((brdf) => brdf.family === family && brdf.lobes.length > 0));
     this.table = [];
     this.single = this.add([[page.single]], 1);
   }
@@ -100,7 +120,7 @@ function basisTexture() {
     const found = functions === "single" ? { ...rows.single, rowsPerMaterial: 0 } : layers[layer][functions];
     stages[name] = { ...found, clusterRow: layers[layer].cluster.firstRow, weights: weights ? weights + layer : null, materials: "material_" + layer, texelNormals: texel_normals };
   }
-  return { basisMap: rows.texture(), stages, colourColumn: rows.columns - 1 };
+  return { basisMap: rows.texture(), stages, colourColumn: rows.columns - 1, families: rows.families };
 }
 
 // Half floats as they come, one plane a basis BRDF, four planes a layer.
