@@ -60,13 +60,16 @@ int most_common(const std::vector<std::int16_t>& map, std::size_t materials) {
   return static_cast<int>(std::max_element(count.begin(), count.end()) - count.begin());
 }
 
-void fill_unseen(Model& model) {
-  const std::size_t texel = Atlas::kUnseenTexel;
-  model.material[texel] = static_cast<std::int16_t>(most_common(model.material, model.materials.size()));
-  for (Image* weights : {&model.weights, &model.projection_weights}) {
-    if (weights->channels > 0) weights->data[texel * static_cast<std::size_t>(weights->channels)] = 1.0f;
+void fill_unseen(const std::vector<std::uint32_t>& texels, Model& model) {
+  const int material = most_common(model.material, model.materials.size());
+  for (const std::size_t texel : texels) {
+    if (model.material[texel] != Model::kNoMaterial) continue;
+    model.material[texel] = static_cast<std::int16_t>(material);
+    for (Image* weights : {&model.weights, &model.projection_weights}) {
+      if (weights->channels > 0) weights->data[texel * static_cast<std::size_t>(weights->channels)] = 1.0f;
+    }
+    model.uncertainty.data[texel] = 1.0f;
   }
-  model.uncertainty.data[texel] = 1.0f;
 }
 
 }  // namespace
@@ -105,7 +108,7 @@ void fill_atlas(const Atlas& atlas, const LumitexelSet& lumitexels, const std::v
       filled.push_back(texel);
     }
   }
-  fill_unseen(model);  // first, so that no neighbour grows into its texel
+  fill_unseen(atlas.unseen_texels, model);  // first, so that no neighbour grows into them
   fill_holes(model, std::move(filled));
 }
 

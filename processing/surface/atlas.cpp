@@ -120,7 +120,7 @@ void split_vertices(const CalibratedSession& session, Atlas& atlas) {
           copies.try_emplace({vertex, patch}, static_cast<std::uint32_t>(atlas.mesh.positions.size()));
       corners[k] = copy->second;
       if (!is_new) continue;
-      Eigen::Vector2d texel{Atlas::kUnseenTexel + 0.5, Atlas::kUnseenTexel + 0.5};
+      Eigen::Vector2d texel{0.5, 0.5};
       if (patch >= 0) {
         const AtlasPatch& where = atlas.patches[static_cast<std::size_t>(patch)];
         texel = pixel_of(session.views[static_cast<std::size_t>(where.view)], source.positions[vertex]) +
@@ -134,6 +134,37 @@ void split_vertices(const CalibratedSession& session, Atlas& atlas) {
   }
 }
 
+// How far linear texture coordinates miss the picture, at the middles of the triangle's sides and of the whole, in pixels.
+double look_up_error(const View& view, const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
+  constexpr double kThird = 1.0 / 3.0;
+  const Eigen::Vector3d places[] = {{0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {kThird, kThird, kThird}};
+  double worst = 0.0;
+  for (const Eigen::Vector3d& weight : places) {
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();
+    Eigen::Vector2d linear = Eigen::Vector2d::Zero();
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      const Eigen::Vector3d& corner = mesh.positions[triangle[static_cast<std::size_t>(k)]];
+      point += weight[k] * corner;
+      linear += weight[k] * pixel_of(view, corner);
+    }
+    worst = std::max(worst, (pixel_of(view, point) - linear).norm());
+  }
+  return worst;
+}
+
+void move_lumitexels_to_texels(const CalibratedSession& session, Atlas& atlas) {
+  atlas.at_texel.assign(session.mesh.triangles.size(), 0);
+  bool any = false;
+  for (std::size_t t = 0; t < atlas.at_texel.size(); ++t) {
+    const int patch = atlas.patch_of_triangle[t];
+    if (patch < 0) continue;
+    const View& view = session.views[static_cast<std::size_t>(atlas.patches[static_cast<std::size_t>(patch)].view)];
+    atlas.at_texel[t] = look_up_error(view, session.mesh, session.mesh.triangles[t]) > kLookUpTolerance;
+    any = any || atlas.at_texel[t] != 0;
+  }
+  if (any) atlas.sites = layout_sites(atlas.mesh, atlas.width, atlas.height, atlas.at_texel).sites;
+}
+
 }  // namespace
 
 Atlas make_atlas(const CalibratedSession& session, const std::vector<int>& best_view) {
@@ -141,6 +172,7 @@ Atlas make_atlas(const CalibratedSession& session, const std::vector<int>& best_
   grow_patches(session, best_view, atlas);
   pack_patches(patch_boxes(session, atlas), atlas);
   split_vertices(session, atlas);
+  move_lumitexels_to_texels(session, atlas);
   return atlas;
 }
 
