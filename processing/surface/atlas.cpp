@@ -4,20 +4,14 @@
 #include <limits>
 #include <map>
 
-#include "drivers/error.h"
+#include "processing/surface/pack_rectangles.h"
 #include "processing/surface/triangle_adjacency.h"
-
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#define STBRP_STATIC
-#define STB_RECT_PACK_IMPLEMENTATION
-#include <stb/stb_rect_pack.h>
-#pragma GCC diagnostic pop
 
 namespace lumitexel {
 namespace {
 
 constexpr int kGutterPx = 2;          // around every patch, so that bilinear look-ups stay inside it
+constexpr int kSmallestAtlas = 64;
 constexpr int kLargestAtlas = 16384;  // what renderers and graphics cards commonly take
 
 struct Box {
@@ -70,39 +64,20 @@ std::vector<Box> patch_boxes(const CalibratedSession& session, const Atlas& atla
   return boxes;
 }
 
-bool pack(std::vector<stbrp_rect>& rectangles, int width, int height) {
-  std::vector<stbrp_node> nodes(static_cast<std::size_t>(width));
-  stbrp_context context;
-  stbrp_init_target(&context, width, height, nodes.data(), width);
-  return stbrp_pack_rects(&context, rectangles.data(), static_cast<int>(rectangles.size())) == 1;
-}
-
-// Grows the atlas in steps of a fifth until everything fits, then cuts off the rows that stayed empty.
 void pack_patches(const std::vector<Box>& boxes, Atlas& atlas) {
-  std::vector<stbrp_rect> rectangles(boxes.size());
-  double area = 0.0;
+  std::vector<PackedRectangle> rectangles(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const Box& box = boxes[i];
-    rectangles[i] = {};
-    rectangles[i].id = static_cast<int>(i);
-    rectangles[i].w = static_cast<int>(std::ceil(box.high_x) - std::floor(box.low_x)) + 2 * kGutterPx;
-    rectangles[i].h = static_cast<int>(std::ceil(box.high_y) - std::floor(box.low_y)) + 2 * kGutterPx;
-    area += static_cast<double>(rectangles[i].w) * rectangles[i].h;
+    rectangles[i].width = static_cast<int>(std::ceil(box.high_x) - std::floor(box.low_x)) + 2 * kGutterPx;
+    rectangles[i].height = static_cast<int>(std::ceil(box.high_y) - std::floor(box.low_y)) + 2 * kGutterPx;
   }
   constexpr int kReserved = 2 * kGutterPx + 1;  // rows on top, for the texel of unseen triangles
-  int edge = std::max(64, static_cast<int>(std::sqrt(area) * 1.05));
-  while (edge <= kLargestAtlas - kReserved && !pack(rectangles, edge, edge)) edge = edge * 6 / 5;
-  if (edge > kLargestAtlas - kReserved) {
-    throw Error("texture atlas: " + std::to_string(boxes.size()) + " patches do not fit into " +
-                std::to_string(kLargestAtlas) + " x " + std::to_string(kLargestAtlas) + " texels");
-  }
-  atlas.width = edge;
-  atlas.height = kReserved;
-  for (const stbrp_rect& rectangle : rectangles) {
-    const auto i = static_cast<std::size_t>(rectangle.id);
-    atlas.patches[i].shift_x = rectangle.x + kGutterPx - static_cast<int>(std::floor(boxes[i].low_x));
-    atlas.patches[i].shift_y = rectangle.y + kGutterPx + kReserved - static_cast<int>(std::floor(boxes[i].low_y));
-    atlas.height = std::max(atlas.height, rectangle.y + rectangle.h + kReserved);
+  const PackedSize size = pack_rectangles(rectangles, kSmallestAtlas, kLargestAtlas - kReserved);
+  atlas.width = size.width;
+  atlas.height = size.height + kReserved;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    atlas.patches[i].shift_x = rectangles[i].x + kGutterPx - static_cast<int>(std::floor(boxes[i].low_x));
+    atlas.patches[i].shift_y = rectangles[i].y + kGutterPx + kReserved - static_cast<int>(std::floor(boxes[i].low_y));
   }
 }
 

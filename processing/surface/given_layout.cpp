@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
 
 #include "drivers/error.h"
+#include "processing/surface/texture_charts.h"
 
 namespace lumitexel {
 namespace {
@@ -60,25 +60,8 @@ Fineness fineness(const CalibratedSession& session, const std::vector<int>& best
   return result;
 }
 
-// Triangles that share a vertex, which is a position and a texture coordinate, are one chart.
-std::vector<std::uint32_t> charts(const Mesh& mesh) {
-  std::vector<std::uint32_t> parent(mesh.positions.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  for (const auto& [a, b, c] : mesh.triangles) {
-    parent[root(b)] = root(a);
-    parent[root(c)] = root(a);
-  }
-  std::vector<std::uint32_t> chart;
-  for (const auto& triangle : mesh.triangles) chart.push_back(root(triangle[0]));
-  return chart;
-}
-
 std::size_t shared_texels(const Mesh& mesh, int size, const std::vector<LayoutSite>& sites) {
-  const std::vector<std::uint32_t> chart = charts(mesh);
+  const std::vector<std::uint32_t> chart = chart_of_triangle(mesh);
   std::vector<std::uint32_t> owner(static_cast<std::size_t>(size) * static_cast<std::size_t>(size), 0xffffffffu);
   for (const LayoutSite& site : sites) owner[site.texel] = chart[site.triangle];
   std::vector<std::uint8_t> shared(owner.size(), 0);
