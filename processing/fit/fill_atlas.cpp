@@ -27,8 +27,29 @@ void copy_texel(Model& model, std::size_t to, std::size_t from) {
   model.uncertainty.data[to] = 1.0f;  // borrowed, so nothing is known about this very texel
 }
 
-// Grows every patch by one texel a round, always from texels of earlier rounds. Only the rim of the last round is looked
-// at, so the cost follows the area that is filled.
+int most_common(const std::vector<std::int16_t>& map, std::size_t materials) {
+  std::vector<std::size_t> count(materials, 0);
+  for (const std::int16_t material : map) {
+    if (material != Model::kNoMaterial) ++count[static_cast<std::size_t>(material)];
+  }
+  return static_cast<int>(std::max_element(count.begin(), count.end()) - count.begin());
+}
+
+void fill_unseen(const std::vector<std::uint32_t>& texels, Model& model) {
+  const int material = most_common(model.material, model.materials.size());
+  for (const std::size_t texel : texels) {
+    if (model.material[texel] != Model::kNoMaterial) continue;
+    model.material[texel] = static_cast<std::int16_t>(material);
+    for (Image* weights : {&model.weights, &model.projection_weights}) {
+      if (weights->channels > 0) weights->data[texel * static_cast<std::size_t>(weights->channels)] = 1.0f;
+    }
+    model.uncertainty.data[texel] = 1.0f;
+  }
+}
+
+}  // namespace
+
+// Always from texels of earlier rounds. Only the rim of the last round is looked at, so the cost follows the area that is filled.
 void fill_holes(Model& model, std::vector<std::size_t> rim) {
   const auto width = static_cast<std::size_t>(model.width), height = static_cast<std::size_t>(model.height);
   for (int round = 0; round < kFillRounds && !rim.empty(); ++round) {
@@ -51,25 +72,6 @@ void fill_holes(Model& model, std::vector<std::size_t> rim) {
     }
   }
 }
-
-int most_common(const std::vector<std::int16_t>& map, std::size_t materials) {
-  std::vector<std::size_t> count(materials, 0);
-  for (const std::int16_t material : map) {
-    if (material != Model::kNoMaterial) ++count[static_cast<std::size_t>(material)];
-  }
-  return static_cast<int>(std::max_element(count.begin(), count.end()) - count.begin());
-}
-
-void fill_unseen(Model& model) {
-  const std::size_t texel = Atlas::kUnseenTexel;
-  model.material[texel] = static_cast<std::int16_t>(most_common(model.material, model.materials.size()));
-  for (Image* weights : {&model.weights, &model.projection_weights}) {
-    if (weights->channels > 0) weights->data[texel * static_cast<std::size_t>(weights->channels)] = 1.0f;
-  }
-  model.uncertainty.data[texel] = 1.0f;
-}
-
-}  // namespace
 
 void fill_atlas(const Atlas& atlas, const LumitexelSet& lumitexels, const std::vector<int>& label,
                 const std::vector<TexelWeights>& weights, const std::vector<TexelWeights>& projection, Model& model) {
@@ -105,7 +107,7 @@ void fill_atlas(const Atlas& atlas, const LumitexelSet& lumitexels, const std::v
       filled.push_back(texel);
     }
   }
-  fill_unseen(model);  // first, so that no neighbour grows into its texel
+  fill_unseen(atlas.unseen_texels, model);  // first, so that no neighbour grows into them
   fill_holes(model, std::move(filled));
 }
 

@@ -18,6 +18,9 @@ namespace lumitexel {
 void fill_atlas(const Atlas& atlas, const LumitexelSet& lumitexels, const std::vector<int>& label,
                 const std::vector<TexelWeights>& weights, const std::vector<TexelWeights>& projection, Model& model);
 
+// Grows every patch by one texel a round, up to 64: texels without a material take material and weights of a neighbour. rim: the texels that have one.
+void fill_holes(Model& model, std::vector<std::size_t> rim);
+
 // Pairs of horizontally or vertically adjacent texels of materials a and b: [a][b], symmetric.
 std::vector<std::vector<std::size_t>> neighbour_counts(const Atlas& atlas, const LumitexelSet& lumitexels,
                                                        const std::vector<int>& label, std::size_t materials);

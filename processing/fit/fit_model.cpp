@@ -50,7 +50,7 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
   const std::vector<int> best_view = choose_best_views(session, scene);
   summary.unseen_triangles = static_cast<std::size_t>(std::count(best_view.begin(), best_view.end(), kUnseen));
   if (summary.unseen_triangles == best_view.size()) throw Error("fit: no view sees any triangle of the mesh");
-  const Atlas atlas = make_atlas(session, best_view);
+  const Atlas atlas = lay_out(session, best_view, options.layout, summary.layout);
 
   timer.begin("lumitexels");
   GatheredLumitexels gathered = gather_lumitexels(session, atlas, scene, progress);

@@ -7,6 +7,7 @@
 #include "processing/brdf/cluster_materials.h"
 #include "processing/interreflection/indirect_light.h"
 #include "processing/normals/fit_normals.h"
+#include "processing/surface/given_layout.h"
 
 namespace lumitexel {
 
@@ -30,6 +31,7 @@ struct InterreflectionOptions {
 struct FitOptions {
   std::string quality = "standard";
   FitMethod method = FitMethod::Lumitexel;
+  LayoutOptions layout;
   int materials = 4;                        // 0: as many as the samples ask for
   BrdfFamily family = BrdfFamily::Lafortune;
   int most_lobes = 1;                       // each must be asked for by the samples; with the paper's method it is the number

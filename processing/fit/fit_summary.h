@@ -26,6 +26,7 @@ struct IndirectSummary {
 
 struct FitSummary {
   std::size_t lumitexels = 0, samples = 0, unseen_triangles = 0, starved = 0;  // starved: lumitexels without samples
+  LayoutSummary layout;
   RejectionCounts rejected;
   RejectedSamples unusable;          // gathered, but not finite or below the surface
   ErrorModel error;                  // that the fit started from, or was given

@@ -37,6 +37,16 @@ json prior_json(const std::vector<PriorChoice>& prior) {
   return list;
 }
 
+json layout_json(const LayoutSummary& layout) {
+  if (!layout.of_mesh) {
+    return {{"from", "photographs"}, {"mesh_refused", layout.refused}, {"lumitexels_at_texels", layout.lumitexels_at_texels}};
+  }
+  return {{"from", "mesh"},
+          {"pixels_a_texel", layout.pixels_a_texel},
+          {"mirrored_triangles", layout.mirrored_triangles},
+          {"shared_texels", layout.shared_texels}};
+}
+
 json counts_json(const CountByReason& count) {
   json object = json::object();
   for (const OutlierReason reason : kOutlierReasons) object[to_string(reason)] = count[static_cast<std::size_t>(reason)];
@@ -82,6 +92,8 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
                        {"interreflections", options.interreflections.wanted},
                        {"intensity_weight", options.method == FitMethod::Paper ? json(options.intensity_weight) : json(nullptr)},
                        {"materials", options.materials},
+                       {"layout", to_string(options.layout.choice)},
+                       {"atlas_size", options.layout.size},
                        {"learning_lumitexels", options.learning_lumitexels},
                        {"final_lumitexels", options.final_lumitexels},
                        {"shared_lobe_shape", options.shared_lobe_shape},
@@ -91,6 +103,7 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
                        {"error_floor", summary.error.floor}};
   object["errors"] = to_string(summary.errors);  // whose they are, never "auto"
   object["materials"] = summary.texels_by_material.size();
+  object["layout"] = layout_json(summary.layout);
   object["lumitexels"] = summary.lumitexels;
   object["samples"] = summary.samples;
   object["starved_lumitexels"] = summary.starved;

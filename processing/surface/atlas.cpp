@@ -4,20 +4,14 @@
 #include <limits>
 #include <map>
 
-#include "drivers/error.h"
+#include "processing/surface/pack_rectangles.h"
 #include "processing/surface/triangle_adjacency.h"
-
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#define STBRP_STATIC
-#define STB_RECT_PACK_IMPLEMENTATION
-#include <stb/stb_rect_pack.h>
-#pragma GCC diagnostic pop
 
 namespace lumitexel {
 namespace {
 
 constexpr int kGutterPx = 2;          // around every patch, so that bilinear look-ups stay inside it
+constexpr int kSmallestAtlas = 64;
 constexpr int kLargestAtlas = 16384;  // what renderers and graphics cards commonly take
 
 struct Box {
@@ -70,39 +64,20 @@ std::vector<Box> patch_boxes(const CalibratedSession& session, const Atlas& atla
   return boxes;
 }
 
-bool pack(std::vector<stbrp_rect>& rectangles, int width, int height) {
-  std::vector<stbrp_node> nodes(static_cast<std::size_t>(width));
-  stbrp_context context;
-  stbrp_init_target(&context, width, height, nodes.data(), width);
-  return stbrp_pack_rects(&context, rectangles.data(), static_cast<int>(rectangles.size())) == 1;
-}
-
-// Grows the atlas in steps of a fifth until everything fits, then cuts off the rows that stayed empty.
 void pack_patches(const std::vector<Box>& boxes, Atlas& atlas) {
-  std::vector<stbrp_rect> rectangles(boxes.size());
-  double area = 0.0;
+  std::vector<PackedRectangle> rectangles(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const Box& box = boxes[i];
-    rectangles[i] = {};
-    rectangles[i].id = static_cast<int>(i);
-    rectangles[i].w = static_cast<int>(std::ceil(box.high_x) - std::floor(box.low_x)) + 2 * kGutterPx;
-    rectangles[i].h = static_cast<int>(std::ceil(box.high_y) - std::floor(box.low_y)) + 2 * kGutterPx;
-    area += static_cast<double>(rectangles[i].w) * rectangles[i].h;
+    rectangles[i].width = static_cast<int>(std::ceil(box.high_x) - std::floor(box.low_x)) + 2 * kGutterPx;
+    rectangles[i].height = static_cast<int>(std::ceil(box.high_y) - std::floor(box.low_y)) + 2 * kGutterPx;
   }
   constexpr int kReserved = 2 * kGutterPx + 1;  // rows on top, for the texel of unseen triangles
-  int edge = std::max(64, static_cast<int>(std::sqrt(area) * 1.05));
-  while (edge <= kLargestAtlas - kReserved && !pack(rectangles, edge, edge)) edge = edge * 6 / 5;
-  if (edge > kLargestAtlas - kReserved) {
-    throw Error("texture atlas: " + std::to_string(boxes.size()) + " patches do not fit into " +
-                std::to_string(kLargestAtlas) + " x " + std::to_string(kLargestAtlas) + " texels");
-  }
-  atlas.width = edge;
-  atlas.height = kReserved;
-  for (const stbrp_rect& rectangle : rectangles) {
-    const auto i = static_cast<std::size_t>(rectangle.id);
-    atlas.patches[i].shift_x = rectangle.x + kGutterPx - static_cast<int>(std::floor(boxes[i].low_x));
-    atlas.patches[i].shift_y = rectangle.y + kGutterPx + kReserved - static_cast<int>(std::floor(boxes[i].low_y));
-    atlas.height = std::max(atlas.height, rectangle.y + rectangle.h + kReserved);
+  const PackedSize size = pack_rectangles(rectangles, kSmallestAtlas, kLargestAtlas - kReserved);
+  atlas.width = size.width;
+  atlas.height = size.height + kReserved;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    atlas.patches[i].shift_x = rectangles[i].x + kGutterPx - static_cast<int>(std::floor(boxes[i].low_x));
+    atlas.patches[i].shift_y = rectangles[i].y + kGutterPx + kReserved - static_cast<int>(std::floor(boxes[i].low_y));
   }
 }
 
@@ -120,7 +95,7 @@ void split_vertices(const CalibratedSession& session, Atlas& atlas) {
           copies.try_emplace({vertex, patch}, static_cast<std::uint32_t>(atlas.mesh.positions.size()));
       corners[k] = copy->second;
       if (!is_new) continue;
-      Eigen::Vector2d texel{Atlas::kUnseenTexel + 0.5, Atlas::kUnseenTexel + 0.5};
+      Eigen::Vector2d texel{0.5, 0.5};
       if (patch >= 0) {
         const AtlasPatch& where = atlas.patches[static_cast<std::size_t>(patch)];
         texel = pixel_of(session.views[static_cast<std::size_t>(where.view)], source.positions[vertex]) +
@@ -134,6 +109,37 @@ void split_vertices(const CalibratedSession& session, Atlas& atlas) {
   }
 }
 
+// How far linear texture coordinates miss the picture, at the middles of the triangle's sides and of the whole, in pixels.
+double look_up_error(const View& view, const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
+  constexpr double kThird = 1.0 / 3.0;
+  const Eigen::Vector3d places[] = {{0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {kThird, kThird, kThird}};
+  double worst = 0.0;
+  for (const Eigen::Vector3d& weight : places) {
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();
+    Eigen::Vector2d linear = Eigen::Vector2d::Zero();
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      const Eigen::Vector3d& corner = mesh.positions[triangle[static_cast<std::size_t>(k)]];
+      point += weight[k] * corner;
+      linear += weight[k] * pixel_of(view, corner);
+    }
+    worst = std::max(worst, (pixel_of(view, point) - linear).norm());
+  }
+  return worst;
+}
+
+void move_lumitexels_to_texels(const CalibratedSession& session, Atlas& atlas) {
+  atlas.at_texel.assign(session.mesh.triangles.size(), 0);
+  bool any = false;
+  for (std::size_t t = 0; t < atlas.at_texel.size(); ++t) {
+    const int patch = atlas.patch_of_triangle[t];
+    if (patch < 0) continue;
+    const View& view = session.views[static_cast<std::size_t>(atlas.patches[static_cast<std::size_t>(patch)].view)];
+    atlas.at_texel[t] = look_up_error(view, session.mesh, session.mesh.triangles[t]) > kLookUpTolerance;
+    any = any || atlas.at_texel[t] != 0;
+  }
+  if (any) atlas.sites = layout_sites(atlas.mesh, atlas.width, atlas.height, atlas.at_texel).sites;
+}
+
 }  // namespace
 
 Atlas make_atlas(const CalibratedSession& session, const std::vector<int>& best_view) {
@@ -141,6 +147,7 @@ Atlas make_atlas(const CalibratedSession& session, const std::vector<int>& best_
   grow_patches(session, best_view, atlas);
   pack_patches(patch_boxes(session, atlas), atlas);
   split_vertices(session, atlas);
+  move_lumitexels_to_texels(session, atlas);
   return atlas;
 }
 

@@ -22,7 +22,7 @@ struct ViewSamples {  // of one view, for every site
   std::vector<float> reflectance, variance;  // sites * channels
 };
 
-// One site for every pixel of the view whose triangle has its best image here.
+// One site for every pixel of the view whose triangle has its best image here, and its lumitexels at pixels.
 void collect_sites(const ViewGeometry& geometry, const Atlas& atlas, const Mesh& mesh, int view,
                    std::vector<Site>& sites) {
   for (int y = 0; y < geometry.height; ++y) {
@@ -31,7 +31,7 @@ void collect_sites(const ViewGeometry& geometry, const Atlas& atlas, const Mesh&
       const std::uint32_t triangle = geometry.triangle[i];
       if (triangle == ViewGeometry::kNoTriangle) continue;
       const int patch_index = atlas.patch_of_triangle[triangle];
-      if (patch_index < 0) continue;
+      if (patch_index < 0 || atlas.at_texel[triangle] != 0) continue;
       const AtlasPatch& patch = atlas.patches[static_cast<std::size_t>(patch_index)];
       if (patch.view != view) continue;
       const int texel = (y + patch.shift_y) * atlas.width + x + patch.shift_x;
@@ -222,7 +222,13 @@ GatheredLumitexels gather_lumitexels(const CalibratedSession& session, const Atl
     collect_sites(geometry.back(), atlas, session.mesh, static_cast<int>(v), sites);
     progress.update(static_cast<std::int64_t>(geometry.size()));
   }
-  std::sort(sites.begin(), sites.end(), [](const Site& a, const Site& b) { return a.texel < b.texel; });
+  for (const LayoutSite& site : atlas.sites) {
+    sites.push_back({site.texel, surface_point(session.mesh, site.triangle, site.u, site.v)});
+  }
+  // Where both kinds of triangle meet, a texel may be asked for twice: the pixel's lumitexel, which came first, has it.
+  const auto by_texel = [](const Site& a, const Site& b) { return a.texel < b.texel; };
+  std::stable_sort(sites.begin(), sites.end(), by_texel);
+  sites.erase(std::unique(sites.begin(), sites.end(), [](const Site& a, const Site& b) { return a.texel == b.texel; }), sites.end());
 
   progress.begin("views: samples", static_cast<std::int64_t>(used_views.size()), "views");
   GatheredLumitexels result;

@@ -1,5 +1,5 @@
-// From photographs to lumitexels (section 5 of the paper): one lumitexel per pixel of each triangle's best view, and in it
-// one reflectance sample from every view that sees the point lit.
+// From photographs to lumitexels (section 5 of the paper): one lumitexel per pixel of each triangle's best view (or per
+// texel, where the atlas says so), and in it one reflectance sample from every view that sees the point lit.
 #pragma once
 
 #include "processing/surface/atlas.h"

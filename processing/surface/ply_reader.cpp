@@ -5,10 +5,12 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <sstream>
 
 #include "drivers/error.h"
+#include "processing/surface/wedge_texcoords.h"
 
 namespace lumitexel {
 namespace {
@@ -186,10 +188,12 @@ class Body {
 
 // Which of a vertex's eight numbers a property is: x y z nx ny nz s t; -1 for others.
 int slot_of(const Property& property) {
-  static const char* const kNames[][2] = {{"x", "x"},   {"y", "y"},   {"z", "z"}, {"nx", "nx"},
-                                          {"ny", "ny"}, {"nz", "nz"}, {"s", "u"}, {"t", "v"}};
+  static const std::vector<const char*> kNames[] = {{"x"},  {"y"},  {"z"},  {"nx"},
+                                                    {"ny"}, {"nz"}, {"s", "u", "texture_u"}, {"t", "v", "texture_v"}};
   for (int slot = 0; slot < 8; ++slot) {
-    if (!property.count_type && (property.name == kNames[slot][0] || property.name == kNames[slot][1])) return slot;
+    for (const char* name : kNames[slot]) {
+      if (!property.count_type && property.name == name) return slot;
+    }
   }
   return -1;
 }
@@ -233,20 +237,40 @@ std::uint32_t vertex_index(Body& body, Scalar type) {
   return static_cast<std::uint32_t>(value);
 }
 
-void read_polygon(Body& body, const Property& list, std::uint32_t face, ParsedMesh& parsed) {
+struct Polygon {
+  std::vector<std::uint32_t> corners;
+  std::vector<double> texcoords;  // two a corner; none where the file gives none
+};
+
+void read_corners(Body& body, const Property& list, Polygon& polygon) {
   const double count = body.next(*list.count_type);
   if (!(count >= 3.0)) throw BadInput(body.place(), "a face of " + std::to_string(count) + " corners", "three or more");
-  const std::uint32_t first = vertex_index(body, list.type);
-  std::uint32_t previous = vertex_index(body, list.type);
-  for (double i = 2; i < count; ++i) {
-    const std::uint32_t corner = vertex_index(body, list.type);
-    parsed.mesh.triangles.push_back({first, previous, corner});
+  for (double i = 0; i < count; ++i) polygon.corners.push_back(vertex_index(body, list.type));
+}
+
+void read_texcoords(Body& body, const Property& list, Polygon& polygon) {
+  const double count = body.next(*list.count_type);
+  for (double i = 0; i < count; ++i) polygon.texcoords.push_back(body.next(list.type));
+}
+
+// As a fan; wedges get the corners' texture coordinates, NaN where the face has none.
+void add_polygon(const Polygon& polygon, std::uint32_t face, const std::string& place, ParsedMesh& parsed, WedgeTexcoords& wedges) {
+  if (!polygon.texcoords.empty() && polygon.texcoords.size() != 2 * polygon.corners.size()) {
+    throw BadInput(place, std::to_string(polygon.texcoords.size()) + " numbers in texcoord",
+                   std::to_string(2 * polygon.corners.size()) + ", two a corner");
+  }
+  const auto texcoord = [&](std::size_t corner) -> Eigen::Vector2d {
+    if (polygon.texcoords.empty()) return Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+    return {polygon.texcoords[2 * corner], polygon.texcoords[2 * corner + 1]};
+  };
+  for (std::size_t i = 2; i < polygon.corners.size(); ++i) {
+    parsed.mesh.triangles.push_back({polygon.corners[0], polygon.corners[i - 1], polygon.corners[i]});
     parsed.face_of_triangle.push_back(face);
-    previous = corner;
+    wedges.push_back({texcoord(0), texcoord(i - 1), texcoord(i)});
   }
 }
 
-void read_faces(Body& body, const Element& element, bool text, ParsedMesh& parsed, const std::string& where) {
+void read_faces(Body& body, const Element& element, bool text, ParsedMesh& parsed, WedgeTexcoords& wedges, const std::string& where) {
   const auto is_corners = [](const Property& p) {
     return p.count_type && (p.name == "vertex_indices" || p.name == "vertex_index");
   };
@@ -258,13 +282,17 @@ void read_faces(Body& body, const Element& element, bool text, ParsedMesh& parse
   for (std::size_t i = 0; i < element.count; ++i) {
     body.enter(element, i);
     if (text) parsed.line_of_face.push_back(body.line());
+    Polygon polygon;
     for (const Property& property : element.properties) {
       if (is_corners(property)) {
-        read_polygon(body, property, static_cast<std::uint32_t>(i), parsed);
+        read_corners(body, property, polygon);
+      } else if (property.count_type && property.name == "texcoord") {
+        read_texcoords(body, property, polygon);
       } else {
         skip(body, property);
       }
     }
+    add_polygon(polygon, static_cast<std::uint32_t>(i), body.place(), parsed, wedges);
   }
 }
 
@@ -274,6 +302,7 @@ ParsedMesh parse_ply(std::string_view bytes, const std::string& where) {
   const Header header = read_header(bytes, where);
   Body body(bytes, header, where);
   ParsedMesh parsed;
+  WedgeTexcoords wedges;
   for (const Element& element : header.elements) {
     // Every value takes a byte at least; asked first, so that a damaged count does not allocate what it claims.
     if (element.count > body.bytes_left()) {
@@ -283,7 +312,7 @@ ParsedMesh parse_ply(std::string_view bytes, const std::string& where) {
     if (element.name == "vertex") {
       read_vertices(body, element, !header.binary, parsed, where);
     } else if (element.name == "face") {
-      read_faces(body, element, !header.binary, parsed, where);
+      read_faces(body, element, !header.binary, parsed, wedges, where);
     } else {
       for (std::size_t i = 0; i < element.count; ++i) {
         body.enter(element, i);
@@ -291,6 +320,7 @@ ParsedMesh parse_ply(std::string_view bytes, const std::string& where) {
       }
     }
   }
+  if (parsed.mesh.texcoords.empty()) split_wedges(wedges, parsed);
   return parsed;
 }
 

@@ -1,5 +1,6 @@
-// PLY, ascii and binary little endian: elements "vertex" (x, y, z; nx, ny, nz; s, t or u, v) and "face" (the list
-// vertex_indices or vertex_index). Other elements and properties are skipped.
+// PLY, ascii and binary little endian: elements "vertex" (x, y, z; nx, ny, nz; s, t or u, v or texture_u, texture_v) and "face" (the list
+// vertex_indices or vertex_index, and where vertices have no texture coordinates the list texcoord, two numbers a corner). Other elements
+// and properties are skipped.
 #pragma once
 
 #include <string>

@@ -41,6 +41,7 @@ void add_calibrate_command(CLI::App& app, CommandAction& action);
 void add_fit_command(CLI::App& app, CommandAction& action);
 void add_experiment_command(CLI::App& app, CommandAction& action);
 void add_render_command(CLI::App& app, CommandAction& action);
+void add_mip_command(CLI::App& app, CommandAction& action);
 void add_evaluate_command(CLI::App& app, CommandAction& action);
 void add_tradeoff_command(CLI::App& app, CommandAction& action);
 void add_export_command(CLI::App& app, CommandAction& action);

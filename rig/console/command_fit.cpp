@@ -18,7 +18,8 @@ struct FitSettings {
   int lobes = 1;
   double intensity_weight = 0.3;
   bool separate_lobes = false, plain_projection = false, principal_functions = false;
-  std::string normals, interreflections;
+  std::string normals, interreflections, layout = "auto";
+  int atlas_size = 0;
 };
 
 template <typename Value>
@@ -32,6 +33,9 @@ Words<ErrorSource> error_words() {
 }
 
 Words<NormalChoice> normal_words() { return words_by_to_string(std::vector{NormalChoice::Auto, NormalChoice::Fitted, NormalChoice::Mesh}); }
+Words<LayoutChoice> layout_words() {
+  return words_by_to_string(std::vector{LayoutChoice::Auto, LayoutChoice::Photographs, LayoutChoice::Mesh});
+}
 
 FitOptions fit_options(const FitSettings& settings) {
   FitOptions options = FitOptions::preset(named_value("--quality", settings.quality, quality_words()));
@@ -39,6 +43,10 @@ FitOptions fit_options(const FitSettings& settings) {
   options.method = named_value("--method", settings.method, method_words());
   options.family = named_value("--family", settings.family, family_words());
   options.errors = named_value("--errors", settings.errors, error_words());
+  options.layout = {named_value("--layout", settings.layout, layout_words()), settings.atlas_size};
+  if (settings.atlas_size > 0 && options.layout.choice != LayoutChoice::Mesh) {
+    throw BadInput("--atlas-size", std::to_string(settings.atlas_size) + " without --layout mesh", "--layout mesh");
+  }
   options.most_lobes = settings.lobes;
   options.intensity_weight = settings.intensity_weight;
   options.principal_functions = settings.principal_functions;
@@ -144,11 +152,30 @@ std::string indirect_line(const FitSummary& summary) {
   return text + "\n";
 }
 
+std::string layout_text(const LayoutSummary& layout) {
+  if (layout.of_mesh) {
+    std::string text = line("layout: the mesh's own; a texel spans %.2f pixels of its best photograph (%.2f to %.2f over 90 %% of the surface)\n",
+                            layout.pixels_a_texel[1], layout.pixels_a_texel[0], layout.pixels_a_texel[2]);
+    if (layout.shared_texels > 0) {
+      text += line("  %zu texels are read from two charts, which lie closer than a texel: they bleed; a larger --atlas-size helps\n", layout.shared_texels);
+    }
+    return text;
+  }
+  std::string text;
+  if (!layout.refused.empty()) text += "layout: cut from the photographs; the mesh's own does not serve: " + layout.refused + "\n";
+  if (layout.lumitexels_at_texels > 0) {
+    text += line("  %zu lumitexels lie at texels instead of pixels: their triangles are too large for texture coordinates to follow the picture\n",
+                 layout.lumitexels_at_texels);
+  }
+  return text;
+}
+
 std::string fit_text(const FitSettings& settings, const FitSummary& summary) {
   std::string text = line("%s: %zu materials, %zu lumitexels, %zu samples (%.1f a lumitexel; %zu lumitexels have none)\n",
                           settings.out.c_str(), summary.texels_by_material.size(), summary.lumitexels, summary.samples,
                           static_cast<double>(summary.samples) / static_cast<double>(summary.lumitexels), summary.starved);
   if (summary.unseen_triangles > 0) text += line("  %zu triangles are seen by no view\n", summary.unseen_triangles);
+  text += layout_text(summary.layout);
   text += error_line(settings, summary);
   text += normals_line(summary);
   text += indirect_line(summary);
@@ -202,6 +229,13 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
   command->add_option("--interreflections", settings->interreflections,
                       "auto: light between the object's own surfaces is predicted and taken out of the samples where it can matter; off "
                       "(default: auto, with --method paper off)");
+  command->add_option("--layout", settings->layout,
+                      "photographs: an atlas whose texels are the pixels of each surface point's best photograph; mesh: the mesh's own "
+                      "texture coordinates, kept as they are; auto: the mesh's if it has some that serve, else photographs")
+      ->capture_default_str();
+  command->add_option("--atlas-size", settings->atlas_size,
+                      "Texels a side of the mesh's own layout (default: as fine as the best photographs in the middle)")
+      ->check(CLI::Range(16, 16384));
   command->add_option("--errors", settings->errors,
                       "What a fit takes for noise. given: 30 % of each prediction and of the median; estimated: what each material's "
                       "residuals say, outliers counting less; labels: estimated for telling materials apart, given for fitting "

@@ -6,6 +6,7 @@
 #include "processing/image/raster_file.h"
 #include "processing/image/tone_map.h"
 #include "processing/evaluation/image_error.h"
+#include "processing/fit/mip_levels.h"
 #include "processing/render/carry_model.h"
 #include "processing/render/render_lit.h"
 #include "processing/render/splat.h"
@@ -96,7 +97,8 @@ void add_outcome(const SplatView& points, CommandResult& result) {
 CommandResult render_command(const RenderSettings& settings, CommandContext& context) {
   const Aov aov = named_value("--aov", settings.aov, aov_words());
   check_render_settings(settings, aov);
-  Model model = model_given("MODEL", settings.model);
+  const std::filesystem::path folder = settings.level > 0 ? level_directory(settings.model, settings.level) : std::filesystem::path(settings.model);
+  Model model = model_given(settings.level > 0 ? "--level" : "MODEL", folder);
   if (!settings.mesh.empty()) model = carried_to(std::move(model), read_mesh(settings.mesh), settings.mesh);
   const Rendering rendering = rendered(settings, model, aov, context.progress);
   const Image& image = rendering.image;

@@ -27,6 +27,7 @@ const std::vector<void (*)(CLI::App&, CommandAction&)> kCommands = {
     add_fit_command,
     add_experiment_command,
     add_render_command,
+    add_mip_command,
     add_evaluate_command,
     add_tradeoff_command,
     add_export_command,

@@ -146,6 +146,9 @@ void add_render_options(CLI::App& command, RenderSettings& settings) {
       "--mesh", settings.mesh,
       "PLY or OBJ: put the maps on this mesh, the model's own (or the scan it was fitted on) bent or moved, with "
       "the same triangles in the same order; texels' normals turn with their triangles");
+  command.add_option("--level", settings.level, "Show a coarser level of the maps, made by mip: for pictures in which a pixel spans 2^level texels")
+      ->check(CLI::Range(0, 8))
+      ->capture_default_str();
   command.add_option("--png", settings.png, "Also write a tone-mapped preview");
 }
 

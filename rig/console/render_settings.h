@@ -19,7 +19,7 @@ struct RenderSettings {
   std::string environment, environment_up;
   std::optional<double> environment_scale, environment_turn_deg;
   bool show_environment = false;
-  int bounces = 0;
+  int bounces = 0, level = 0;
   std::optional<int> samples_per_pixel;
   std::optional<double> time_limit_s, noise;
 

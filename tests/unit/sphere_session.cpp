@@ -72,11 +72,11 @@ View view_of_origin(const std::string& name, const Eigen::Vector3d& eye, const E
   return view;
 }
 
-CalibratedSession sphere_session(std::vector<View> views, const TemporaryFolder& folder) {
+CalibratedSession diffuse_session(Mesh mesh, std::vector<View> views, const TemporaryFolder& folder) {
   CalibratedSession session;
   session.channels = 3;
-  session.mesh = sphere_mesh(0.1, 60);
-  session.key = "sphere";
+  session.mesh = std::move(mesh);
+  session.key = "diffuse";
   const RayScene scene(session.mesh);
   for (View& view : views) {
     view.photograph = folder / (view.name + ".exr");
@@ -84,6 +84,10 @@ CalibratedSession sphere_session(std::vector<View> views, const TemporaryFolder&
   }
   session.views = std::move(views);
   return session;
+}
+
+CalibratedSession sphere_session(std::vector<View> views, const TemporaryFolder& folder) {
+  return diffuse_session(sphere_mesh(0.1, 60), std::move(views), folder);
 }
 
 }  // namespace lumitexel

@@ -1,0 +1,175 @@
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "processing/fit/fill_atlas.h"
+#include "processing/fit/mip_levels.h"
+#include "processing/fit/observe.h"
+#include "processing/normals/fit_normals.h"
+#include "processing/surface/gather_lumitexels.h"
+
+namespace lumitexel {
+namespace {
+
+constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
+
+struct ViewSum {
+  std::size_t parts = 0;
+  std::array<double, kMaxChannels> reflectance{}, variance{};
+};
+
+struct Gathering {  // of one coarser texel
+  std::size_t parts = 0;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
+  std::map<std::uint16_t, ViewSum> views;
+};
+
+void add_part(const LumitexelTile& tile, std::size_t i, std::size_t channels, Gathering& into) {
+  ++into.parts;
+  into.position += tile.position[i];
+  into.normal += tile.normal[i];
+  for (std::size_t s = tile.first_sample[i]; s < tile.first_sample[i + 1]; ++s) {
+    ViewSum& view = into.views[tile.view[s]];
+    ++view.parts;
+    for (std::size_t c = 0; c < channels; ++c) {
+      view.reflectance[c] += static_cast<double>(tile.reflectance[s * channels + c]);
+      view.variance[c] += static_cast<double>(tile.variance[s * channels + c]);
+    }
+  }
+}
+
+void append(const Gathering& from, std::uint32_t texel, LumitexelSet& set) {
+  if (set.tiles.empty() || set.tiles.back().size() == LumitexelTile::kCapacity) set.tiles.emplace_back();
+  LumitexelTile& tile = set.tiles.back();
+  tile.position.push_back(from.position / static_cast<double>(from.parts));
+  tile.normal.push_back(from.normal.normalized());
+  tile.texel.push_back(texel);
+  for (const auto& [view, sum] : from.views) {
+    if (2 * sum.parts < from.parts) continue;
+    tile.view.push_back(view);
+    const auto parts = static_cast<double>(sum.parts);
+    for (std::size_t c = 0; c < static_cast<std::size_t>(set.channels); ++c) {
+      tile.reflectance.push_back(static_cast<float>(sum.reflectance[c] / parts));
+      tile.variance.push_back(static_cast<float>(sum.variance[c] / (parts * parts)));
+    }
+  }
+  tile.first_sample.push_back(static_cast<std::uint32_t>(tile.samples()));
+}
+
+double median_reflectance(const Observations& observations) {
+  std::vector<float> values;
+  for (const Observation& sample : observations.samples) {
+    values.insert(values.end(), sample.reflectance.begin(), sample.reflectance.begin() + observations.channels);
+  }
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return static_cast<double>(*middle);
+}
+
+std::vector<int> labels_of(const LumitexelSet& set, const Model& averaged) {
+  std::vector<int> labels;
+  for (const LumitexelTile& tile : set.tiles) {
+    for (const std::uint32_t texel : tile.texel) labels.push_back(std::max<int>(0, averaged.material[texel]));
+  }
+  return labels;
+}
+
+void fit_level_normals(const CalibratedSession& session, const Model& model, const std::vector<int>& label, int width, double median,
+                       LumitexelSet& set) {
+  std::vector<std::vector<Brdf>> bases;
+  for (const ModelMaterial& material : model.materials) bases.push_back(material.basis);
+  std::vector<Eigen::Vector3d> normals;
+  {
+    const DirectedLumitexels directed(session, set);
+    normals = fit_normals(directed, lumitexel_neighbours(directed, width), bases, label, median, {}).normal;
+  }
+  std::size_t i = 0;
+  for (LumitexelTile& tile : set.tiles) {
+    for (Eigen::Vector3d& normal : tile.normal) normal = normals[i++];
+  }
+}
+
+std::vector<TexelWeights> level_weights(const Model& model, const Observations& observations, const std::vector<int>& label, const ErrorModel& error) {
+  std::vector<TexelWeights> weights(label.size());
+  for (std::size_t j = 0; j < model.materials.size(); ++j) {
+    std::vector<std::size_t> members;
+    for (std::size_t i = 0; i < label.size(); ++i) {
+      if (label[i] == static_cast<int>(j)) members.push_back(i);
+    }
+    const ModelMaterial& material = model.materials[j];
+    const TexelPrior prior = choose_prior(observations, members, material.basis, material.brdf, error).prior;
+    oneapi::tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t k) {
+      weights[members[k]] = project_texel(observations.of(members[k]), observations.channels, material.basis, material.brdf, error, prior);
+    });
+  }
+  return weights;
+}
+
+}  // namespace
+
+LumitexelSet texel_lumitexels(const Model& model, const CalibratedSession& session, Progress& progress) {
+  Atlas atlas;
+  atlas.width = model.width;
+  atlas.height = model.height;
+  atlas.mesh = model.mesh;
+  atlas.patch_of_triangle.assign(model.mesh.triangles.size(), -1);
+  atlas.at_texel.assign(model.mesh.triangles.size(), 1);
+  atlas.sites = layout_sites(model.mesh, model.width, model.height).sites;
+  const RayScene scene(session.mesh);
+  return gather_lumitexels(session, atlas, scene, progress).set;
+}
+
+LumitexelSet coarser_lumitexels(const LumitexelSet& parts, const CoarserLayout& layout) {
+  std::vector<std::size_t> coarser_of;  // by the model's texel, as far as there are parts
+  for (const auto& [texel, coarser] : layout.parts) {
+    if (coarser_of.size() <= texel) coarser_of.resize(texel + 1, kNowhere);
+    coarser_of[texel] = coarser;
+  }
+  std::map<std::uint32_t, Gathering> gathered;
+  for (const LumitexelTile& tile : parts.tiles) {
+    for (std::size_t i = 0; i < tile.size(); ++i) {
+      if (tile.texel[i] >= coarser_of.size() || coarser_of[tile.texel[i]] == kNowhere) continue;
+      add_part(tile, i, static_cast<std::size_t>(parts.channels), gathered[static_cast<std::uint32_t>(coarser_of[tile.texel[i]])]);
+    }
+  }
+  LumitexelSet set;
+  set.channels = parts.channels;
+  for (const auto& [texel, sums] : gathered) append(sums, texel, set);
+  return set;
+}
+
+Model refitted_level(const Model& model, const Model& averaged, const LumitexelSet& fine, const CalibratedSession& session, int level) {
+  const CoarserLayout layout = level_layout(model, level);
+  LumitexelSet set = coarser_lumitexels(fine, layout);
+  const std::vector<int> label = labels_of(set, averaged);
+  Observations observations = observe(session, set);
+  const double median = median_reflectance(observations);
+  if (has_normals(model)) {
+    fit_level_normals(session, model, label, layout.width, median, set);
+    observations = observe(session, set);
+  }
+  constexpr double kShare = 0.3;  // as in the fit (fit_options.h)
+  ErrorModel error;
+  error.relative = kShare;
+  error.floor = std::max(1e-6, kShare * median);
+  Model result;
+  result.channels = model.channels;
+  result.single = model.single;
+  for (const ModelMaterial& material : model.materials) result.materials.push_back({material.brdf, material.basis, {}});
+  Atlas atlas;
+  atlas.width = layout.width;
+  atlas.height = layout.height;
+  atlas.mesh = layout.mesh;
+  // A corner that holds no lumitexel of its own is the one that unseen surface looks up.
+  if (averaged.samples.data[0] > 0.0f || averaged.material[0] == Model::kNoMaterial) atlas.unseen_texels.clear();
+  fill_atlas(atlas, set, label, level_weights(model, observations, label, error), {}, result);
+  auto provenance = nlohmann::json::parse(averaged.provenance_json);
+  provenance["way"] = "refitted";
+  result.provenance_json = provenance.dump();
+  return result;
+}
+
+}  // namespace lumitexel
