@@ -8,7 +8,7 @@ namespace lumitexel {
 RenderedView predicted_view(const ViewRenderer& renderer, const View& view, FitStage stage, int paths) {
   const Model& model = renderer.model();
   RenderedView predicted = renderer.render(view, {stage, 1});
-  if (model.indirect_bounces == 0 || stage != last_stage(model)) return predicted;
+  if (model.indirect_bounces == 0 || stage < last_stage(model)) return predicted;
   LitOptions options;
   options.stage = stage;
   options.path.bounces = model.indirect_bounces;

@@ -6,7 +6,7 @@
 
 namespace lumitexel {
 
-// Rendered at pixel centres; light between surfaces, at the model's last stage only, from `paths` a pixel (about a percent of noise in
+// Rendered at pixel centres; light between surfaces, from the model's last stage on, from `paths` a pixel (about a percent of noise in
 // it at 16).
 RenderedView predicted_view(const ViewRenderer& renderer, const View& view, FitStage stage, int paths = 16);
 

@@ -159,8 +159,8 @@ TEST(PredictedView, AddsLightBetweenSurfacesWhereTheFitTookItOut) {
     corner.normals.push_back(-Eigen::Vector3d::UnitX());
     corner.texcoords.push_back(wall.texcoords[i]);
   }
-  corner.triangles.push_back({4, 6, 5});
-  corner.triangles.push_back({4, 7, 6});
+  corner.triangles.push_back({4, 5, 6});
+  corner.triangles.push_back({4, 6, 7});
   Model model = model_of(corner, 2, 2, diffuse_brdf(0.25, 0.25, 0.25));
   View view = view_from_above(kSize, 5.0);
   view.light.vector_in_world = Eigen::Vector3d(-1, 0, 1).normalized();

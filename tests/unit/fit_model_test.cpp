@@ -49,8 +49,13 @@ TEST(FitModel, ProvenanceSaysWhatWasDone) {
     names.push_back(stage.at("name"));
     EXPECT_GT(stage.at("peak_bytes").get<double>(), 0.0);
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"atlas", "lumitexels", "materials", "projection", "normals", "materials on fitted normals",
-                                             "projection on fitted normals", "model"}));
+  // A sphere asks for neither: both were looked for, and nothing was fitted again.
+  EXPECT_EQ(names, (std::vector<std::string>{"atlas", "lumitexels", "materials", "projection", "light between surfaces", "are normals worth it",
+                                             "model"}));
+  EXPECT_EQ(provenance.at("normals"), "mesh");
+  EXPECT_EQ(provenance.at("light_between_surfaces").at("samples_followed"), 0);
+  EXPECT_FALSE(has_normals(fitted.model));
+  EXPECT_EQ(fitted.model.indirect_bounces, 0);
 }
 
 // The paper's method ends with functions moved to fit; what the texels mixed before stays in the model and can be shown.
