@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "processing/brdf/select_lumitexels.h"
 #include "processing/fit/observe.h"
 #include "processing/normals/lumitexel_bands.h"
 
@@ -109,6 +110,11 @@ bool finite(const LumitexelTile& tile, std::size_t sample, std::size_t channels)
   return true;
 }
 
+// Without some of the photographs, and only on part of the surface, materials may have nothing to be learnt on.
+bool can_learn(const CalibratedSession& session, const LumitexelSet& lumitexels) {
+  return !select_lumitexels(observe(session, lumitexels), kMostLearnt).empty();
+}
+
 }  // namespace
 
 void turn(const std::vector<Eigen::Vector3d>& normals, LumitexelSet& lumitexels) {
@@ -138,6 +144,7 @@ NormalsWorth try_normals(const CalibratedSession& session, const FitInputs& inpu
     turn(fitted.normal, turned);
     turn(fitted.normal, left_out_turned);
   }
+  if (!can_learn(session, learnt) || !can_learn(session, turned)) return {};
   const Arm on_mesh(session, inputs, learnt, left_out), on_fitted(session, inputs, turned, left_out_turned);
 
   Cells cells;

@@ -43,6 +43,13 @@ TEST(NormalTrial, OnePhotographDecidesNothing) {
   EXPECT_FALSE(found.enough());
 }
 
+// Three photographs, one of which is left out: too few samples to learn materials on, where the fit itself had enough.
+TEST(NormalTrial, DecidesNothingWhereTheOthersAreTooFew) {
+  const NormalsWorth found = trial(make_patch({20, 3, 0.05, 0.05, 1}));
+  EXPECT_FALSE(found.enough());
+  EXPECT_EQ(found.samples, 0u);
+}
+
 TEST(NormalTrial, HeldOutPhotographsAreNotLookedAt) {
   NormalPatch patch = make_patch({40, 10, 0.05, 0.05, 1});
   for (View& view : patch.session.views) view.heldout = true;
