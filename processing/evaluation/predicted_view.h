@@ -6,8 +6,8 @@
 
 namespace lumitexel {
 
-// Rendered at pixel centres; light between surfaces, from the model's last stage on, from `paths` a pixel (about a percent of noise in
-// it at 16).
-RenderedView predicted_view(const ViewRenderer& renderer, const View& view, FitStage stage, int paths = 16);
+// Rendered at pixel centres; light between surfaces, from the model's last stage on, from `paths` a pixel (its noise is a third of
+// it or so, which is a percent or two of the whole).
+RenderedView predicted_view(const ViewRenderer& renderer, const View& view, FitStage stage, int paths = 8);
 
 }  // namespace lumitexel
