@@ -7,6 +7,7 @@
 #include "processing/fit/fill_atlas.h"
 #include "processing/fit/mip_levels.h"
 #include "processing/fit/observe.h"
+#include "processing/fit/reflectance_stage.h"
 #include "processing/normals/fit_normals.h"
 #include "processing/surface/gather_lumitexels.h"
 
@@ -56,17 +57,6 @@ void append(const Gathering& from, std::uint32_t texel, LumitexelSet& set) {
     }
   }
   tile.first_sample.push_back(static_cast<std::uint32_t>(tile.samples()));
-}
-
-double median_reflectance(const Observations& observations) {
-  std::vector<float> values;
-  for (const Observation& sample : observations.samples) {
-    values.insert(values.end(), sample.reflectance.begin(), sample.reflectance.begin() + observations.channels);
-  }
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return static_cast<double>(*middle);
 }
 
 std::vector<int> labels_of(const LumitexelSet& set, const Model& averaged) {
