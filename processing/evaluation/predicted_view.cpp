@@ -8,7 +8,9 @@ namespace lumitexel {
 RenderedView predicted_view(const ViewRenderer& renderer, const View& view, FitStage stage, int paths) {
   const Model& model = renderer.model();
   RenderedView predicted = renderer.render(view, {stage, 1});
-  if (model.indirect_bounces == 0 || stage < last_stage(model)) return predicted;
+  // Stages before normals were fitted to samples as photographed, unless there are no others.
+  const bool taken_out = model.indirect_bounces > 0 && (!has_normals(model) || stage == FitStage::Normal);
+  if (!taken_out) return predicted;
   LitOptions options;
   options.stage = stage;
   options.path.bounces = model.indirect_bounces;

@@ -121,11 +121,12 @@ void write_gltf(const std::filesystem::path& directory, const Mesh& mesh, const 
   const json primitive = primitive_of(mesh, with_normals, buffer);
   json document;
   document["asset"] = {{"version", "2.0"}, {"generator", "Lumitexel"},
-                       {"extras", {{"conversion_loss", loss_json(loss)}, {"unit", "metre"}, {"axes", "the session's world"}}}};
+                       {"extras", {{"conversion_loss", loss_json(loss)}, {"unit", "metre"}, {"axes", "the session's world, whose z is up, turned by the node to glTF's, whose y is"}}}};
   document["extensionsUsed"] = {"KHR_materials_specular"};
   document["scene"] = 0;
   document["scenes"] = json::array({{{"nodes", {0}}}});
-  document["nodes"] = json::array({{{"mesh", 0}}});
+  const double half = std::sqrt(0.5);  // a quarter turn about x: z becomes y
+  document["nodes"] = json::array({{{"mesh", 0}, {"rotation", {-half, 0.0, 0.0, half}}}});
   document["meshes"] = json::array({{{"primitives", json::array({primitive})}}});
   document["materials"] = json::array({material_of(maps)});
   // Clamped: opposite edges of an atlas have nothing to do with each other.

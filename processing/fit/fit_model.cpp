@@ -6,7 +6,6 @@
 #include "processing/fit/fill_atlas.h"
 #include "processing/fit/interreflection_stage.h"
 #include "processing/fit/normal_stage.h"
-#include "processing/fit/normal_trial.h"
 #include "processing/fit/observe.h"
 #include "processing/fit/provenance.h"
 #include "processing/fit/reflectance_stage.h"
@@ -37,6 +36,14 @@ std::vector<std::uint32_t> texels_of(const LumitexelSet& lumitexels) {
   return texels;
 }
 
+void count_samples(const Observations& observations, FitSummary& summary) {
+  summary.lumitexels = observations.lumitexels();
+  summary.samples = observations.samples.size();
+  summary.unusable = observations.rejected;
+  summary.starved = 0;
+  for (std::size_t i = 0; i < observations.lumitexels(); ++i) summary.starved += observations.of(i).empty();
+}
+
 }  // namespace
 
 FittedModel fit_model(const CalibratedSession& session, const FitOptions& options, StageTimer timer, Progress& progress) {
@@ -54,14 +61,16 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
 
   timer.begin("lumitexels");
   GatheredLumitexels gathered = gather_lumitexels(session, atlas, scene, progress);
-  Observations observations = observe(session, gathered.set);
-  summary.lumitexels = observations.lumitexels();
-  summary.samples = observations.samples.size();
+  Observations observations;
+  ErrorModel error;
+  // Again whenever samples or normals have changed: samples may now be below their normals.
+  const auto look = [&] {
+    observations = observe(session, gathered.set);
+    error = error_model(observations, options);
+    count_samples(observations, summary);
+  };
+  look();
   summary.rejected = gathered.rejected;
-  summary.unusable = observations.rejected;
-  for (std::size_t i = 0; i < observations.lumitexels(); ++i) summary.starved += observations.of(i).empty();
-
-  const ErrorModel error = error_model(observations, options);
   summary.error = error;
   const FitInputs inputs{atlas, gathered.set, observations, options, error};
   Reflectance reflectance;
@@ -87,6 +96,11 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
     const Brdf single = model.single;
     reflectance = fit_reflectance(inputs, pass, model, summary, timer, progress);
     model.single = single;
+    if (options.principal_functions) {
+      seek_principal_functions(inputs, reflectance, model, summary, timer, progress);
+      for (ModelMaterial& material : model.materials) material.projection_basis.clear();  // the last stage has no stages of its own
+      reflectance.projection.clear();
+    }
     summary.normal = error_at(FitStage::Normal);
     fill();
   };
@@ -106,11 +120,11 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
     timer.begin("light between surfaces");
     indirect.emplace(session, gathered.set, scene, model, options.interreflections);
     if (indirect->can_matter()) changed = take_out(*indirect, last_stage(model));
-    if (changed) observations = observe(session, gathered.set);
+    if (changed) look();
   }
   if (auto normals = seek_normals(session, inputs, reflectance.clustering.label, model, summary, timer, progress)) {
     turn(normals->normal, gathered.set);
-    observations = observe(session, gathered.set);
+    look();
     keep_before_normals(model, summary);
     set_normal_sigma(gathered.set, normals->sigma_rad, options.normal_fit.prior.coarse_sigma_rad, model);
     fit_again(" on fitted normals");
@@ -121,7 +135,7 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
     timer.begin("light between surfaces, round " + std::to_string(round));
     changed = take_out(*indirect, last_stage(model));
     if (!changed) break;
-    observations = observe(session, gathered.set);
+    look();
     fit_again(", round " + std::to_string(round));
   }
   if (indirect) {

@@ -24,7 +24,7 @@ const char* to_string(NormalChoice choice);  // "auto", "fitted", "mesh"
 // Whether light between the object's surfaces is sought (interreflection_stage.h), and how.
 struct InterreflectionOptions {
   bool wanted = true;
-  int rounds = 2;  // at most; the first costs no fit of its own where normals are fitted after it
+  int rounds = 2;  // at most, and at least 1; the first costs no fit of its own where normals are fitted after it
   IndirectOptions light;
 };
 

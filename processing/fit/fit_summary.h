@@ -19,13 +19,14 @@ struct IndirectSummary {
   double largest_bound = 0;       // of any lumitexel (indirect_bound.h)
   std::size_t concerned = 0;      // lumitexels where it can matter
   std::size_t samples = 0;        // of theirs, that were followed in the last round
-  double share = 0;               // of these samples' reflectance that came by way of other surfaces
-  std::vector<double> change;     // rms of what each round changed, over the rms of these samples; empty: not needed
+  double share = 0;               // of these samples' reflectance that was taken out
+  std::vector<double> change;     // rms of what each round would change, over the rms of these samples; empty: not needed
   std::size_t dropped_paths = 0;  // that were not finite
 };
 
 struct FitSummary {
-  std::size_t lumitexels = 0, samples = 0, unseen_triangles = 0, starved = 0;  // starved: lumitexels without samples
+  std::size_t lumitexels = 0, samples = 0, unseen_triangles = 0, starved = 0;  // starved: lumitexels without samples;
+                                                                               // as the last stage saw them
   LayoutSummary layout;
   RejectionCounts rejected;
   RejectedSamples unusable;          // gathered, but not finite or below the surface

@@ -12,10 +12,6 @@ constexpr double kCanMatter = 0.02;     // of a lamp's light on a surface that f
 constexpr double kFewestOfAll = 0.005;  // of the lumitexels: a crease or two is not worth another fit
 constexpr double kNewEnough = 0.005;    // rms change of the samples followed over their rms: less changes no fit
 
-// Of the way from what was taken out before. A model from which too little was taken is too bright, sends too much, and after that too much is taken: in a
-// bowl of albedo 0.7 whole steps go round for ever, half ones arrive.
-constexpr float kLaterStep = 0.5f;
-
 double square(double x) { return x * x; }
 
 }  // namespace
@@ -36,7 +32,7 @@ IndirectRemoval::IndirectRemoval(const CalibratedSession& session, LumitexelSet&
   for (const LumitexelTile& tile : lumitexels.tiles) {
     measured_.push_back(tile.reflectance);
     measured_variance_.push_back(tile.variance);
-    taken_.reflectance.emplace_back(tile.reflectance.size(), 0.0f);
+    taken_.emplace_back(tile.reflectance.size(), 0.0f);
   }
 }
 
@@ -44,33 +40,78 @@ bool IndirectRemoval::can_matter() const {
   return static_cast<double>(summary_.concerned) > kFewestOfAll * static_cast<double>(bound_.size());
 }
 
+namespace {
+
+// The share of the model's indirect light that is to be taken, from sums over a lumitexel: t of the header, so that (measured - t) / indirect.
+// All of it where a sum is not positive, and nothing follows from them.
+double share_to_take(double measured, double fitted, double indirect) {
+  if (!(measured > 0.0 && fitted > 0.0 && indirect > 0.0)) return 1.0;
+  const double straight = 2.0 * measured / (1.0 + std::sqrt(1.0 + 4.0 * measured * indirect / square(fitted)));
+  return (measured - straight) / indirect;
+}
+
+}  // namespace
+
+// Lumitexel by lumitexel and channel by channel. The paths' variance is the lumitexel's mean: a sample's own goes with how much its few paths
+// happened to find, and would make samples count more from which too little is taken.
+void IndirectRemoval::correct(IndirectLight& found) const {
+  const auto channels = static_cast<std::size_t>(lumitexels_.channels);
+  for (std::size_t t = 0; t < measured_.size(); ++t) {
+    const LumitexelTile& tile = lumitexels_.tiles[t];
+    for (std::size_t i = 0; i < tile.size(); ++i) {
+      for (std::size_t c = 0; c < channels; ++c) {
+        double measured = 0.0, taken = 0.0, indirect = 0.0, variance = 0.0;
+        const std::size_t first = tile.first_sample[i] * channels + c, last = tile.first_sample[i + 1] * channels + c;
+        for (std::size_t k = first; k < last; k += channels) {
+          measured += static_cast<double>(measured_[t][k]);
+          taken += static_cast<double>(taken_[t][k]);
+          indirect += static_cast<double>(found.reflectance[t][k]);
+          variance += static_cast<double>(found.variance[t][k]);
+        }
+        const double share = share_to_take(measured, measured - taken, indirect);
+        const double mean_variance = first < last ? square(share) * variance * static_cast<double>(channels) / static_cast<double>(last - first) : 0.0;
+        for (std::size_t k = first; k < last; k += channels) {
+          found.reflectance[t][k] *= static_cast<float>(share);
+          found.variance[t][k] = static_cast<float>(mean_variance);
+        }
+      }
+    }
+  }
+}
+
 bool IndirectRemoval::remove(const Model& model, FitStage stage) {
   IndirectLight found = indirect_light(session_, lumitexels_, wanted_, model, stage, options_.light);
-  const float step = summary_.change.empty() ? 1.0f : kLaterStep;
+  correct(found);
   double change = 0.0, all = 0.0, light = 0.0, indirect = 0.0;
+  std::size_t lumitexel = 0;
+  for (std::size_t t = 0; t < measured_.size(); ++t) {
+    const LumitexelTile& tile = lumitexels_.tiles[t];
+    const auto channels = static_cast<std::size_t>(lumitexels_.channels);
+    for (std::size_t i = 0; i < tile.size(); ++i, ++lumitexel) {
+      if (!wanted_[lumitexel]) continue;
+      for (std::size_t k = tile.first_sample[i] * channels; k < tile.first_sample[i + 1] * channels; ++k) {
+        change += square(static_cast<double>(found.reflectance[t][k] - taken_[t][k]));
+        all += square(static_cast<double>(measured_[t][k]));
+        light += static_cast<double>(measured_[t][k]);
+        indirect += static_cast<double>(found.reflectance[t][k]);
+      }
+    }
+  }
+  const double relative = all > 0.0 ? std::sqrt(change / all) : 0.0;
+  summary_.change.push_back(relative);
+  summary_.samples = found.samples;
+  summary_.dropped_paths += found.dropped_paths;
+  if (!(relative > kNewEnough)) return false;
+  summary_.share = light > 0.0 ? indirect / light : 0.0;
   for (std::size_t t = 0; t < measured_.size(); ++t) {
     LumitexelTile& tile = lumitexels_.tiles[t];
     for (std::size_t k = 0; k < measured_[t].size(); ++k) {
-      const float before = taken_.reflectance[t][k];
-      const float take = before + step * (found.reflectance[t][k] - before);
-      if (take != 0.0f || before != 0.0f) {
-        change += square(static_cast<double>(found.reflectance[t][k] - before));
-        all += square(static_cast<double>(measured_[t][k]));
-        light += static_cast<double>(measured_[t][k]);
-        indirect += static_cast<double>(take);
-      }
-      tile.reflectance[k] = measured_[t][k] - take;
+      tile.reflectance[k] = measured_[t][k] - found.reflectance[t][k];
       tile.variance[k] = measured_variance_[t][k] + found.variance[t][k];
-      found.reflectance[t][k] = take;
     }
   }
-  taken_ = std::move(found);
-  const double relative = all > 0.0 ? std::sqrt(change / all) : 0.0;
-  summary_.change.push_back(relative);
-  summary_.share = light > 0.0 ? indirect / light : 0.0;
-  summary_.samples = taken_.samples;
-  summary_.dropped_paths += taken_.dropped_paths;
-  return relative > kNewEnough;
+  taken_ = std::move(found.reflectance);
+  return true;
 }
 
 Image IndirectRemoval::map(int width, int height) const {
@@ -85,7 +126,7 @@ Image IndirectRemoval::map(int width, int height) const {
       double light = 0.0, indirect = 0.0;
       for (std::size_t s = tile.first_sample[k] * channels; !measured_.empty() && s < tile.first_sample[k + 1] * channels; ++s) {
         light += static_cast<double>(measured_[t][s]);
-        indirect += static_cast<double>(taken_.reflectance[t][s]);
+        indirect += static_cast<double>(taken_[t][s]);
       }
       texel[1] = light > 0.0 ? static_cast<float>(std::clamp(indirect / light, 0.0, 1.0)) : 0.0f;
     }

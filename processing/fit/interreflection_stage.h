@@ -1,5 +1,9 @@
 // Light between the object's own surfaces taken out of the samples, where it can matter: predicted by the model so far, subtracted, and
-// predicted anew by the model that follows, until that changes nothing more.
+// predicted anew by the model that follows, until that changes nothing more or the rounds are used up.
+//
+// A model from which too little was taken is too bright, and predicts too much. Light by way of another surface is reflected twice where a lamp's is
+// once: with t the straight part of a lumitexel's light, d the straight part that the model was fitted to and I what the model sends by way of other
+// surfaces, I (t / d)^2 is what it should send. So t + I (t / d)^2 = what was photographed, solved for t.
 #pragma once
 
 #include <optional>
@@ -21,8 +25,8 @@ class IndirectRemoval {
 
   // Whether enough of the surface can get enough light from other surfaces.
   bool can_matter() const;
-  // Predicts by the model at `stage` and takes that, and nothing that was taken before, out of the samples. True if the samples changed by
-  // so much that what was fitted to them should be fitted again.
+  // Predicts by the model at `stage`, which was fitted to the samples as they are, and takes that instead of what was taken before out of the
+  // samples as photographed. Only where they change by so much that they should be fitted again: else false, and they are as they were.
   bool remove(const Model& model, FitStage stage);
 
   const IndirectSummary& summary() const { return summary_; }
@@ -30,13 +34,15 @@ class IndirectRemoval {
   Image map(int width, int height) const;
 
  private:
+  void correct(IndirectLight& found) const;
+
   const CalibratedSession& session_;
   LumitexelSet& lumitexels_;
   InterreflectionOptions options_;
   std::vector<float> bound_;
   std::vector<bool> wanted_;
   std::vector<std::vector<float>> measured_, measured_variance_;  // the samples as photographed, one entry a tile
-  IndirectLight taken_;
+  std::vector<std::vector<float>> taken_;                         // of these
   IndirectSummary summary_;
 };
 

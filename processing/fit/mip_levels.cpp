@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "processing/fit/fill_atlas.h"
+#include "processing/fit/provenance.h"
 
 namespace lumitexel {
 namespace {
@@ -28,6 +29,7 @@ struct TexelSum {
   std::vector<double> weights, by_material;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   double variance = 0, samples = 0;
+  std::array<double, 2> indirect{};
 };
 
 void add_texel(const Model& model, std::size_t texel, const CommonBasis& common, TexelSum& sum) {
@@ -42,6 +44,7 @@ void add_texel(const Model& model, std::size_t texel, const CommonBasis& common,
   const auto sigma = static_cast<double>(model.uncertainty.data[texel]);
   sum.variance += sigma * sigma;
   sum.samples += static_cast<double>(model.samples.data[texel]);
+  for (std::size_t k = 0; k < 2 && !model.indirect.data.empty(); ++k) sum.indirect[k] += static_cast<double>(model.indirect.data[2 * texel + k]);
 }
 
 std::vector<TexelSum> sums_of(const Model& model, const CoarserLayout& layout, const CommonBasis& common) {
@@ -74,9 +77,7 @@ void copy_unseen(const Model& model, const CommonBasis& common, std::vector<Texe
 }  // namespace
 
 CoarserLayout level_layout(const Model& model, int level) {
-  const auto provenance = nlohmann::json::parse(model.provenance_json);
-  const bool of_mesh = provenance.contains("layout") && provenance.at("layout").value("from", "") == "mesh";
-  return coarser_layout(model.mesh, model.width, model.height, level, !of_mesh);
+  return coarser_layout(model.mesh, model.width, model.height, level, layout_of(model).choice != LayoutChoice::Mesh);
 }
 
 Model averaged_level(const Model& model, int level) {
@@ -96,6 +97,8 @@ Model averaged_level(const Model& model, int level) {
   result.normal = Image(layout.width, layout.height, 3);
   result.uncertainty = Image(layout.width, layout.height, 1);
   result.samples = Image(layout.width, layout.height, 1);
+  result.indirect_bounces = model.indirect_bounces;
+  if (!model.indirect.data.empty()) result.indirect = Image(layout.width, layout.height, 2);
   std::vector<std::size_t> filled;
   for (std::size_t texel = 0; texel < sums.size(); ++texel) {
     const TexelSum& sum = sums[texel];
@@ -109,6 +112,9 @@ Model averaged_level(const Model& model, int level) {
     for (std::size_t k = 0; k < 3; ++k) result.normal.data[3 * texel + k] = static_cast<float>(normal[static_cast<Eigen::Index>(k)]);
     result.uncertainty.data[texel] = static_cast<float>(std::sqrt(sum.variance / sum.count));
     result.samples.data[texel] = static_cast<float>(sum.samples);
+    for (std::size_t k = 0; k < 2 && !result.indirect.data.empty(); ++k) {
+      result.indirect.data[2 * texel + k] = static_cast<float>(sum.indirect[k] / sum.count);
+    }
     filled.push_back(texel);
   }
   fill_holes(result, std::move(filled));

@@ -9,13 +9,12 @@ std::optional<FittedNormals> seek_normals(const CalibratedSession& session, cons
                                           const Model& model, FitSummary& summary, StageTimer& timer, Progress& progress) {
   const FitOptions& options = inputs.options;
   if (options.normals == NormalChoice::Mesh) return {};
-  std::vector<std::vector<Brdf>> bases;
-  for (const ModelMaterial& material : model.materials) bases.push_back(material.basis);
+  const std::vector<std::vector<Brdf>> bases = bases_of(model);
   const double median = median_reflectance(inputs.observations);
   if (options.normals == NormalChoice::Auto) {
     timer.begin("are normals worth it");
     progress.begin("are normals worth it", 1, "trials");
-    summary.normals_worth = try_normals(session, inputs, bases, label);
+    summary.normals_worth = try_normals(session, inputs);
     progress.update(1);
     if (!summary.normals_worth->enough()) return {};
   }
@@ -26,6 +25,7 @@ std::optional<FittedNormals> seek_normals(const CalibratedSession& session, cons
                                      options.normal_fit, [&](int step) { progress.update(step); });
   summary.normal_sigma_scale =
       normal_sigma_scale(session, inputs.lumitexels, inputs.atlas.width, bases, label, median, options.normal_fit);
+  // Nobody knows less than the prior: where samples say nothing it is what is left, and no disagreement of theirs widens it.
   for (float& sigma : fitted.sigma_rad) {
     sigma = static_cast<float>(std::min(*summary.normal_sigma_scale * static_cast<double>(sigma), options.normal_fit.prior.coarse_sigma_rad));
   }

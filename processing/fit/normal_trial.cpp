@@ -33,20 +33,27 @@ struct Cell {
 };
 using Cells = std::map<std::pair<std::uint32_t, std::uint16_t>, Cell>;  // by block and photograph
 
-// What a fit to some of the photographs makes of the others: the deviance of each left-out sample that is above its surface on either normal.
+// What a fit to some of the photographs makes of the others. A left-out sample below its surface is predicted to be black.
 class Arm {
  public:
-  Arm(const CalibratedSession& session, const FitInputs& inputs, const LumitexelSet& learnt, const LumitexelSet& left_out)
-      : observations_(observe(session, learnt)), left_out_(left_out) {
+  Arm(const CalibratedSession& session, const FitInputs& inputs, const LumitexelSet& learnt, const Observations& observations,
+      const LumitexelSet& left_out)
+      : left_out_(left_out) {
     FitOptions options = inputs.options;
     options.learning_lumitexels = std::min(options.learning_lumitexels, kMostLearnt);
     options.final_lumitexels = std::min(options.final_lumitexels, kMostLearnt);
     FitSummary summary;
     StageTimer timer;
     NoProgress quiet;
-    reflectance_ = fit_reflectance({inputs.atlas, learnt, observations_, options, inputs.error}, "", model_, summary, timer, quiet);
+    reflectance_ = fit_reflectance({inputs.atlas, learnt, observations, options, inputs.error}, "", model_, summary, timer, quiet);
     for (const ModelMaterial& material : model_.materials) prepared_.emplace_back(material.basis.begin(), material.basis.end());
     for (const View& view : session.views) eyes_.push_back(view.camera_in_world());
+  }
+
+  FittedNormals normals(const CalibratedSession& session, const LumitexelSet& learnt, const FitInputs& inputs, double median) const {
+    const DirectedLumitexels directed(session, learnt);
+    return fit_normals(directed, lumitexel_neighbours(directed, inputs.atlas.width), bases_of(model_), reflectance_.clustering.label, median,
+                       inputs.options.normal_fit);
   }
 
   // Of sample s of lumitexel i of a tile of the left-out set, i being number `lumitexel` of all.
@@ -74,7 +81,6 @@ class Arm {
   }
 
  private:
-  Observations observations_;
   const LumitexelSet& left_out_;
   Model model_;
   Reflectance reflectance_;
@@ -111,41 +117,27 @@ bool finite(const LumitexelTile& tile, std::size_t sample, std::size_t channels)
 }
 
 // Without some of the photographs, and only on part of the surface, materials may have nothing to be learnt on.
-bool can_learn(const CalibratedSession& session, const LumitexelSet& lumitexels) {
-  return !select_lumitexels(observe(session, lumitexels), kMostLearnt).empty();
-}
+bool can_learn(const Observations& observations) { return !select_lumitexels(observations, kMostLearnt).empty(); }
 
 }  // namespace
 
-void turn(const std::vector<Eigen::Vector3d>& normals, LumitexelSet& lumitexels) {
-  std::size_t i = 0;
-  for (LumitexelTile& tile : lumitexels.tiles) {
-    for (Eigen::Vector3d& normal : tile.normal) normal = normals[i++];
-  }
-}
-
-NormalsWorth try_normals(const CalibratedSession& session, const FitInputs& inputs, const std::vector<std::vector<Brdf>>& bases,
-                         const std::vector<int>& label) {
-  const LumitexelBands bands = lumitexel_bands(inputs.lumitexels, inputs.atlas.width, kMostLumitexels);
+NormalsWorth try_normals(const CalibratedSession& session, const FitInputs& inputs) {
   const std::vector<bool> left_out_view = left_out_views(session);
-  if (std::count(left_out_view.begin(), left_out_view.end(), true) == 0) return {};
   std::vector<bool> learnt_view = left_out_view;
   learnt_view.flip();
-  std::vector<int> own_label;
-  for (const std::size_t i : bands.lumitexel) own_label.push_back(label[i]);
+  const LumitexelBands bands = lumitexel_bands(inputs.lumitexels, inputs.atlas.width, kMostLumitexels);
+  const LumitexelSet learnt = only_views(bands.set, learnt_view), left_out = only_views(bands.set, left_out_view);
+  const Observations observations = observe(session, learnt);
+  if (left_out.samples() == 0 || !can_learn(observations)) return {};
+  const Arm on_mesh(session, inputs, learnt, observations, left_out);
 
-  LumitexelSet learnt = only_views(bands.set, learnt_view), left_out = only_views(bands.set, left_out_view);
-  if (learnt.samples() == 0 || left_out.samples() == 0) return {};
   LumitexelSet turned = learnt, left_out_turned = left_out;
-  {
-    const DirectedLumitexels directed(session, learnt);
-    const FittedNormals fitted = fit_normals(directed, lumitexel_neighbours(directed, inputs.atlas.width), bases, own_label,
-                                             median_reflectance(inputs.observations), inputs.options.normal_fit);
-    turn(fitted.normal, turned);
-    turn(fitted.normal, left_out_turned);
-  }
-  if (!can_learn(session, learnt) || !can_learn(session, turned)) return {};
-  const Arm on_mesh(session, inputs, learnt, left_out), on_fitted(session, inputs, turned, left_out_turned);
+  const FittedNormals fitted = on_mesh.normals(session, learnt, inputs, median_reflectance(observations));
+  turn(fitted.normal, turned);
+  turn(fitted.normal, left_out_turned);
+  const Observations observations_turned = observe(session, turned);
+  if (!can_learn(observations_turned)) return {};
+  const Arm on_fitted(session, inputs, turned, observations_turned, left_out_turned);
 
   Cells cells;
   std::size_t number = 0;

@@ -1,4 +1,4 @@
-// Whether an object needs normals of its own: photographs are left out, everything is fitted to the others as a fit would do it, once on the mesh's
+// Whether an object needs normals of its own: photographs are left out, everything is fitted to the others as a fit would do it (normal_trial.h), once on the mesh's
 // normals and once on fitted ones, and what was left out is predicted both ways.
 #pragma once
 
@@ -9,12 +9,12 @@ namespace lumitexel {
 struct NormalsWorth {
   // By how much fitted normals predict a left-out sample better: difference of its deviance (minus twice the log likelihood) under the fit's
   // given error model.
-  double gain = 0, gain_sigma = 0;  // one sigma from how it differs between photographs and blocks of the surface
+  double gain = 0, gain_sigma = 0;  // one sigma from how it differs between photographs and blocks of the surface; what all
+                                    // blocks of a photograph share, as its pose, is not in it
   std::size_t samples = 0;          // left-out samples that were judged
 
   bool enough() const { return gain > kLeastGain && gain > gain_sigma; }  // false where nothing could be judged
 
- private:
   static constexpr double kLeastGain = 0.02;  // a hundredth of what one sigma costs in each channel or so: less is not worth a map
 };
 

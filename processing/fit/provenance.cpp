@@ -143,4 +143,13 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
   return object.dump(2);
 }
 
+LayoutOptions layout_of(const Model& model) {
+  const json provenance = json::parse(model.provenance_json);
+  const bool of_mesh = provenance.contains("layout") && provenance.at("layout").value("from", "") == "mesh";
+  LayoutOptions layout;
+  layout.choice = of_mesh ? LayoutChoice::Mesh : LayoutChoice::Photographs;
+  layout.size = of_mesh ? model.width : 0;
+  return layout;
+}
+
 }  // namespace lumitexel

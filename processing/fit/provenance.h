@@ -11,4 +11,7 @@ namespace lumitexel {
 // rms, rms_by_channel, rms_by_material, texels_by_material, prior.
 std::string provenance_json(const CalibratedSession& session, const FitOptions& options, const FitSummary& summary);
 
+// What lay_out needs to make the model's atlas once more.
+LayoutOptions layout_of(const Model& model);
+
 }  // namespace lumitexel

@@ -8,6 +8,7 @@
 #include "processing/fit/mip_levels.h"
 #include "processing/fit/observe.h"
 #include "processing/fit/reflectance_stage.h"
+#include "processing/interreflection/indirect_light.h"
 #include "processing/normals/fit_normals.h"
 #include "processing/surface/gather_lumitexels.h"
 
@@ -67,19 +68,21 @@ std::vector<int> labels_of(const LumitexelSet& set, const Model& averaged) {
   return labels;
 }
 
+// Light between surfaces, as the model sends it: the texels' weights, which levels mix the same, were fitted without it.
+void take_out_indirect(const CalibratedSession& session, const Model& model, LumitexelSet& set) {
+  IndirectOptions options;
+  options.bounces = model.indirect_bounces;
+  const IndirectLight light = indirect_light(session, set, std::vector<bool>(set.size(), true), model, last_stage(model), options);
+  for (std::size_t t = 0; t < set.tiles.size(); ++t) {
+    for (std::size_t k = 0; k < set.tiles[t].reflectance.size(); ++k) set.tiles[t].reflectance[k] -= light.reflectance[t][k];
+  }
+}
+
 void fit_level_normals(const CalibratedSession& session, const Model& model, const std::vector<int>& label, int width, double median,
                        LumitexelSet& set) {
-  std::vector<std::vector<Brdf>> bases;
-  for (const ModelMaterial& material : model.materials) bases.push_back(material.basis);
-  std::vector<Eigen::Vector3d> normals;
-  {
-    const DirectedLumitexels directed(session, set);
-    normals = fit_normals(directed, lumitexel_neighbours(directed, width), bases, label, median, {}).normal;
-  }
-  std::size_t i = 0;
-  for (LumitexelTile& tile : set.tiles) {
-    for (Eigen::Vector3d& normal : tile.normal) normal = normals[i++];
-  }
+  const DirectedLumitexels directed(session, set);
+  const std::vector<Eigen::Vector3d> normals = fit_normals(directed, lumitexel_neighbours(directed, width), bases_of(model), label, median, {}).normal;
+  turn(normals, set);
 }
 
 std::vector<TexelWeights> level_weights(const Model& model, const Observations& observations, const std::vector<int>& label, const ErrorModel& error) {
@@ -134,6 +137,7 @@ LumitexelSet coarser_lumitexels(const LumitexelSet& parts, const CoarserLayout& 
 Model refitted_level(const Model& model, const Model& averaged, const LumitexelSet& fine, const CalibratedSession& session, int level) {
   const CoarserLayout layout = level_layout(model, level);
   LumitexelSet set = coarser_lumitexels(fine, layout);
+  if (model.indirect_bounces > 0) take_out_indirect(session, model, set);
   const std::vector<int> label = labels_of(set, averaged);
   Observations observations = observe(session, set);
   const double median = median_reflectance(observations);
@@ -141,10 +145,7 @@ Model refitted_level(const Model& model, const Model& averaged, const LumitexelS
     fit_level_normals(session, model, label, layout.width, median, set);
     observations = observe(session, set);
   }
-  constexpr double kShare = 0.3;  // as in the fit (fit_options.h)
-  ErrorModel error;
-  error.relative = kShare;
-  error.floor = std::max(1e-6, kShare * median);
+  const ErrorModel error = error_model(observations, {});
   Model result;
   result.channels = model.channels;
   result.single = model.single;
@@ -156,6 +157,15 @@ Model refitted_level(const Model& model, const Model& averaged, const LumitexelS
   // A corner that holds no lumitexel of its own is the one that unseen surface looks up.
   if (averaged.samples.data[0] > 0.0f || averaged.material[0] == Model::kNoMaterial) atlas.unseen_texels.clear();
   fill_atlas(atlas, set, label, level_weights(model, observations, label, error), {}, result);
+  // Surface that no view saw, farther from any lumitexel than holes are filled.
+  for (std::size_t t = 0; t < result.material.size(); ++t) {
+    if (result.material[t] != Model::kNoMaterial || averaged.material[t] == Model::kNoMaterial) continue;
+    result.material[t] = averaged.material[t];
+    result.weights.data[t * static_cast<std::size_t>(result.weights.channels)] = 1.0f;
+    result.uncertainty.data[t] = 1.0f;
+  }
+  result.indirect_bounces = averaged.indirect_bounces;
+  result.indirect = averaged.indirect;
   auto provenance = nlohmann::json::parse(averaged.provenance_json);
   provenance["way"] = "refitted";
   result.provenance_json = provenance.dump();

@@ -131,6 +131,12 @@ double median_reflectance(const Observations& observations) {
   return static_cast<double>(*middle);
 }
 
+std::vector<std::vector<Brdf>> bases_of(const Model& model) {
+  std::vector<std::vector<Brdf>> bases;
+  for (const ModelMaterial& material : model.materials) bases.push_back(material.basis);
+  return bases;
+}
+
 ErrorModel error_model(const Observations& observations, const FitOptions& options) {
   if (observations.samples.empty()) return {};
   ErrorModel error;

@@ -24,6 +24,9 @@ struct FitInputs {
   const ErrorModel& error;
 };
 
+// Of each material, as its texels mix them.
+std::vector<std::vector<Brdf>> bases_of(const Model& model);
+
 // What the chain from samples to weights leaves, beside the materials in the model.
 struct Reflectance {
   Clustering clustering;

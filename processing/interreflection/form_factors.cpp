@@ -1,10 +1,8 @@
 #include "processing/interreflection/form_factors.h"
 
-#include <cmath>
-#include <numbers>
-
 #include "processing/brdf/ordered_sum.h"
 #include "processing/normals/texel_normal.h"
+#include "processing/render/lobe_sampling.h"
 #include "processing/render/sample_sequence.h"
 
 namespace lumitexel {
@@ -12,10 +10,10 @@ namespace {
 
 constexpr std::uint32_t kDirections = 64;
 
-// By the cosine: a point drawn evenly from the disc, lifted onto the hemisphere (Malley).
+// By the cosine, as diffuse light leaves.
 Eigen::Vector3d above(const Eigen::Vector3d& normal, const TangentFrame& frame, const Eigen::Vector2d& uniform) {
-  const double radius = std::sqrt(uniform.x()), turn = 2.0 * std::numbers::pi * uniform.y();
-  return frame * Eigen::Vector2d(radius * std::cos(turn), radius * std::sin(turn)) + std::sqrt(1.0 - uniform.x()) * normal;
+  const Eigen::Vector3d local = LobeSampler().sample(Eigen::Vector3d::UnitZ(), uniform);
+  return frame * local.head<2>() + local.z() * normal;
 }
 
 bool faces(const Mesh& mesh, std::uint32_t triangle, const Eigen::Vector3d& direction) {

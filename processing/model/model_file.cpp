@@ -175,6 +175,7 @@ LayerHeader parse_layer(const Json& document, const std::string& where) {
 
 ModelHeader parse_header(const std::string& text, const std::string& where) {
   const Json document = Json::parse(text, nullptr, false);
+  if (document.is_discarded()) throw BadInput(where, "no JSON: damaged, or cut off", "the description of a model");
   const bool ours = document.is_object() && document.contains("format") && document.at("format") == kFormat;
   if (!ours) throw BadInput(where, "no \"format\": \"" + std::string(kFormat) + "\"", "the description of a model");
   int_field(document, "version", kVersion, kVersion, where);
@@ -242,6 +243,12 @@ void check_model_directory(const fs::path& directory) {
   if (fs::exists(target) && !is_model(target) && !(fs::is_directory(target) && fs::is_empty(target))) {
     throw BadInput(directory.string(), "exists and is not a model", "a new folder or a model to replace");
   }
+  // Before hours of work, not after them.
+  std::error_code failure;
+  const fs::path probe = sibling(target, ".writing");
+  fs::create_directories(probe, failure);
+  if (failure) throw BadInput(directory.string(), "cannot be made: " + failure.message(), "a folder that can be written");
+  fs::remove_all(probe, failure);
 }
 
 void write_model(const fs::path& directory, const Model& model) {

@@ -7,6 +7,11 @@
 
 namespace lumitexel {
 
+const TexelShare& nearest_texel(const TexturedPoint& point) {
+  return *std::max_element(point.texels.begin(), point.texels.begin() + point.texel_count,
+                           [](const TexelShare& a, const TexelShare& b) { return a.weight < b.weight; });
+}
+
 ModelSurface::ModelSurface(const Model& model) : model_(model), scene_(model.mesh) {}
 
 std::optional<TexturedPoint> ModelSurface::trace(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {

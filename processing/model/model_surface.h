@@ -27,6 +27,9 @@ struct TexturedPoint {
   double u = 0, v = 0;  // barycentric weights of its second and third corner
 };
 
+// Of a point that has any.
+const TexelShare& nearest_texel(const TexturedPoint& point);
+
 class ModelSurface {
  public:
   // Keeps a reference to the model. Its mesh needs texture coordinates.

@@ -61,11 +61,6 @@ void for_each_pixel(const CameraModel& camera, const PerPixel& per_pixel) {
   });
 }
 
-const TexelShare& nearest(const TexturedPoint& point) {
-  return *std::max_element(point.texels.begin(), point.texels.begin() + point.texel_count,
-                           [](const TexelShare& a, const TexelShare& b) { return a.weight < b.weight; });
-}
-
 Eigen::Vector3d blended_normal(const ModelSurface& surface, const TexturedPoint& point) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int i = 0; i < point.texel_count; ++i) {
@@ -77,7 +72,7 @@ Eigen::Vector3d blended_normal(const ModelSurface& surface, const TexturedPoint&
 
 float material_at(const Model& model, const TexturedPoint& point) {
   if (point.texel_count == 0) return kNoMaterial;
-  const TexelShare& texel = nearest(point);
+  const TexelShare& texel = nearest_texel(point);
   return model.material[static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(model.width) +
                         static_cast<std::size_t>(texel.x)];
 }
@@ -97,7 +92,7 @@ void write_aov(const ModelSurface& surface, const TexturedPoint& point, Aov aov,
   if (aov == Aov::Normal) store(blended_normal(surface, point));
   if (aov == Aov::Position) store(point.position_in_world);
   if (aov == Aov::Cluster) *out = material_at(model, point);
-  if (aov == Aov::Samples && point.texel_count > 0) *out = model.samples.at(nearest(point).x, nearest(point).y);
+  if (aov == Aov::Samples && point.texel_count > 0) *out = model.samples.at(nearest_texel(point).x, nearest_texel(point).y);
   if (aov == Aov::Sigma) *out = static_cast<float>(blended_sigma(model, point));
 }
 

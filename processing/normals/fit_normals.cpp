@@ -10,6 +10,13 @@ std::vector<NormalMaterial> normal_materials(const std::vector<std::vector<Brdf>
   return materials;
 }
 
+void turn(const std::vector<Eigen::Vector3d>& normals, LumitexelSet& lumitexels) {
+  std::size_t i = 0;
+  for (LumitexelTile& tile : lumitexels.tiles) {
+    for (Eigen::Vector3d& normal : tile.normal) normal = normals[i++];
+  }
+}
+
 FittedNormals fit_normals(const DirectedLumitexels& lumitexels, const Neighbours& neighbours, const std::vector<std::vector<Brdf>>& bases,
                           const std::vector<int>& label, double median_reflectance, const NormalFitOptions& options,
                           const std::function<void(int)>& after_step) {

@@ -26,6 +26,9 @@ struct FittedNormals {
 std::vector<NormalMaterial> normal_materials(const std::vector<std::vector<Brdf>>& bases, int channels, double median_reflectance,
                                              const NormalFitOptions& options);
 
+// Gives lumitexels other normals: one each, in world.
+void turn(const std::vector<Eigen::Vector3d>& normals, LumitexelSet& lumitexels);
+
 // bases: of each material, as texels mix them. label: material of each lumitexel. median_reflectance: 1/sr.
 FittedNormals fit_normals(const DirectedLumitexels& lumitexels, const Neighbours& neighbours, const std::vector<std::vector<Brdf>>& bases,
                           const std::vector<int>& label, double median_reflectance, const NormalFitOptions& options,

@@ -81,11 +81,6 @@ bool near_highlight(const Brdf& brdf, const Eigen::Vector3d& normal, const Look&
   return geometry.cos_i > 0.0 && specular(brdf, geometry) >= kNearHighlight * specular(brdf, mirror_geometry(geometry.cos_i));
 }
 
-const TexelShare& nearest_texel(const TexturedPoint& point) {
-  return *std::max_element(point.texels.begin(), point.texels.begin() + point.texel_count,
-                           [](const TexelShare& a, const TexelShare& b) { return a.weight < b.weight; });
-}
-
 int material_of(const Model& model, const TexelShare& texel) {
   return model.material[static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(model.width) + static_cast<std::size_t>(texel.x)];
 }

@@ -161,7 +161,7 @@ std::string material_section(const ReportSubject& subject, const ViewRenderer& r
                        "of that material's "
                        "mean reflectance under one light from above left, all at one exposure. On the object itself "
                        "every texel mixes its "
-                       "material's basis and so varies about this mean. An ideal white surface has albedo 1.",
+                       "material's basis and varies about this mean as far as its photographs ask for it, which may be not at all. An ideal white surface has albedo 1.",
                        "<div class=\"row\"><div>" + map + "</div><div style=\"grid-column: span 2\">" +
                            sphere_figures(subject.model) + "</div></div>\n");
 }

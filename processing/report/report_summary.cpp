@@ -132,8 +132,8 @@ Json summary_json(const ReportSubject& subject) {
 
 std::string headline(const ReportSubject& subject, const Json& summary) {
   std::string text = "<header><h1>" + html::escaped(subject.name) +
-                     "</h1>\n<p>How the surface of this object reflects light, measured from photographs under a moving lamp. Every point "
-                     "of the surface has its own reflectance, so the object can be shown from any side under any light.</p>\n<p class=\"finding\">";
+                     "</h1>\n<p>How the surface of this object reflects light, measured from photographs under a moving lamp. Each point "
+                     "of the surface has a reflectance of its own as far as its photographs ask for one, so the object can be shown from any side under any light.</p>\n<p class=\"finding\">";
   if (summary.at("prediction").is_object()) text += html::escaped(prediction_text(summary.at("prediction"))) + " ";
   return text + html::escaped(surface_text(summary)) + "</p>\n" + tiles(subject, summary) + "</header>\n";
 }

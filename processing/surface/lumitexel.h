@@ -13,7 +13,7 @@ struct LumitexelTile {
   static constexpr std::size_t kCapacity = 8192;
 
   // One entry a lumitexel.
-  std::vector<Eigen::Vector3d> position, normal;  // in world; normal of the coarse mesh, unit
+  std::vector<Eigen::Vector3d> position, normal;  // in world; normal of the coarse mesh until a fit has turned it, unit
   std::vector<std::uint32_t> texel;               // atlas index y * width + x
   std::vector<std::uint32_t> first_sample{0};     // samples of i: first_sample[i] … first_sample[i + 1]
 

@@ -4,10 +4,10 @@
 #include <utility>
 
 #include "processing/export/export_model.h"
-#include "processing/export/moved_model.h"
-#include "processing/model/model_file.h"
+#include "processing/render/carry_model.h"
 #include "processing/surface/mesh_file.h"
 #include "rig/console/command.h"
+#include "rig/console/input_folder.h"
 
 namespace lumitexel {
 namespace {
@@ -27,8 +27,8 @@ struct ExportSettings {
 
 CommandResult export_command(const ExportSettings& settings, CommandContext& context) {
   const ExportFormat format = export_format_from_string(settings.to);
-  Model model = read_model(settings.model);
-  if (!settings.mesh.empty()) model = on_moved_mesh(std::move(model), read_mesh(settings.mesh), settings.mesh);
+  Model model = model_given("MODEL", settings.model);
+  if (!settings.mesh.empty()) model = carried_to(std::move(model), read_mesh(settings.mesh), settings.mesh);
   const ConversionLoss loss = export_model(model, format, settings.out, context.progress);
   CommandResult result;
   const bool finite = std::isfinite(loss.error.psnr_db);

@@ -137,17 +137,17 @@ std::string error_line(const FitSettings& settings, const FitSummary& summary) {
 std::string normals_line(const FitSummary& summary) {
   if (!summary.normals_worth) return "";
   const NormalsWorth& worth = *summary.normals_worth;
-  return line("normals: %s; on fitted ones a left-out sample's deviance is %.3f +- %.3f lower\n",
-              worth.enough() ? "fitted" : "the mesh's", worth.gain, worth.gain_sigma);
+  return line("normals: %s; on fitted ones a left-out sample's deviance is %.3f +- %.3f lower (asked for: over %.2f and over one sigma)\n",
+              worth.enough() ? "fitted" : "the mesh's", worth.gain, worth.gain_sigma, NormalsWorth::kLeastGain);
 }
 
 std::string indirect_line(const FitSummary& summary) {
   if (!summary.indirect) return "";
   const IndirectSummary& indirect = *summary.indirect;
-  std::string text = line("light between surfaces: can matter on %.1f %% of the surface (at most %.3f of a lamp's)",
+  std::string text = line("light between surfaces: can matter on %.1f %% of the surface (estimated to be at most %.3f of a lamp's)",
                           100.0 * static_cast<double>(indirect.concerned) / static_cast<double>(summary.lumitexels), indirect.largest_bound);
   if (indirect.change.empty()) return text + ", so nobody followed it\n";
-  text += line("; %.1f %% of the light there, changes by round:", 100.0 * indirect.share);
+  text += line("; %.1f %% of what was photographed there was taken out; each round changed the samples there by", 100.0 * indirect.share);
   for (const double change : indirect.change) text += line(" %.2f %%", 100.0 * change);
   return text + "\n";
 }

@@ -50,7 +50,7 @@ void add_mip_command(CLI::App& app, CommandAction& action) {
   command->add_option("MODEL", settings->model, "Folder of the model; its levels are written to MODEL/levels, replacing those there")->required();
   command->add_option("--session", settings->session,
                       "The session that the model was fitted to: levels are fitted anew to its photographs, normals too, instead of averaged");
-  command->add_option("--levels", settings->levels, "How many, each half as fine as the one before")->check(CLI::Range(1, kMostLevels))->capture_default_str();
+  command->add_option("--levels", settings->levels, "How many, each half as fine as the one before; an atlas of many small patches shrinks by less, as each keeps a border")->check(CLI::Range(1, kMostLevels))->capture_default_str();
   command->callback([settings, &action] {
     action = [settings](CommandContext& context) { return mip_command(*settings, context); };
   });

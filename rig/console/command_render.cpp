@@ -98,7 +98,13 @@ CommandResult render_command(const RenderSettings& settings, CommandContext& con
   const Aov aov = named_value("--aov", settings.aov, aov_words());
   check_render_settings(settings, aov);
   const std::filesystem::path folder = settings.level > 0 ? level_directory(settings.model, settings.level) : std::filesystem::path(settings.model);
-  Model model = model_given(settings.level > 0 ? "--level" : "MODEL", folder);
+  if (settings.level > 0 && !std::filesystem::exists(folder)) {
+    throw BadInput("--level", std::to_string(settings.level) + ", which is not in " + settings.model, "one that `lumitexel mip " + settings.model + " --levels " + std::to_string(settings.level) + "` makes");
+  }
+  Model model = model_given("MODEL", folder);
+  if (!settings.stage.empty() && !holds_stage(model, fit_stage_from_string(settings.stage))) {
+    std::fprintf(stderr, "note: %s does not hold the stage %s; shown is the last one before it\n", settings.model.c_str(), settings.stage.c_str());
+  }
   if (!settings.mesh.empty()) model = carried_to(std::move(model), read_mesh(settings.mesh), settings.mesh);
   const Rendering rendering = rendered(settings, model, aov, context.progress);
   const Image& image = rendering.image;

@@ -1,5 +1,6 @@
 #include "rig/console/render_settings.h"
 
+#include <filesystem>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -157,6 +158,9 @@ void check_render_settings(const RenderSettings& settings, Aov aov) {
   require_what_they_describe(settings);
   require_options_that_act(settings, aov);
   require_what_splats_can_show(settings);
+  if (std::filesystem::path(settings.out).extension() == ".png") {
+    throw BadInput("--out", settings.out, "an .exr file, which is what is written; --png FILE for a preview beside it");
+  }
   if (settings.bounces < 0) throw BadInput("--bounces", std::to_string(settings.bounces), "0 or more");
 }
 

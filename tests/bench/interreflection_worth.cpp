@@ -9,6 +9,7 @@
 #include "processing/fit/fit_model.h"
 #include "processing/interreflection/form_factors.h"
 #include "rig/session_store.h"
+#include "tests/bench/fit_settings.h"
 #include "tests/bench/machine.h"
 
 namespace lumitexel {
@@ -70,23 +71,18 @@ void print(const char* title, const CalibratedSession& session, const Model& mod
 
 int main(int argc, char** argv) {
   CLI::App app("Held-out error with and without light between surfaces, by how concave the surface is");
-  std::string directory, quality = "draft";
-  int materials = 6, lobes = 1, bounces = 2;
-  app.add_option("SESSION", directory, "Session, calibrated or imported")->required();
-  app.add_option("--quality", quality, "draft, standard or reference")->capture_default_str();
-  app.add_option("--materials", materials, "As fit has it; 0: auto")->capture_default_str();
-  app.add_option("--lobes", lobes, "As fit has it")->capture_default_str();
+  lumitexel::FitSettings settings;
+  int bounces = 2;
+  settings.ask_for(app);
   app.add_option("--bounces", bounces, "Between surfaces")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   using namespace lumitexel;
   NoProgress quiet;
-  const CalibratedSession session = calibrate_session(SessionStore::open(directory, OpenMode::ReadOnly), quiet);
-  FitOptions options = FitOptions::preset(quality);
-  options.materials = materials;
-  options.most_lobes = lobes;
+  const CalibratedSession session = calibrate_session(SessionStore::open(settings.session, OpenMode::ReadOnly), quiet);
+  FitOptions options = settings.options();
   options.interreflections.light.bounces = bounces;
   std::printf("%s\n%s, %s quality, %d materials, %d lobes; held-out photographs, relative / clipped / roots\n", machine_line().c_str(),
-              directory.c_str(), quality.c_str(), materials, lobes);
+              settings.session.c_str(), settings.quality.c_str(), settings.materials, settings.lobes);
   std::printf("%-28s   %-17s   %-17s   %-17s   %s\n", "share of itself faced", "under 0.05", "0.05 to 0.2", "0.2 and more", "all");
   FitOptions without = options;
   without.interreflections.wanted = false;

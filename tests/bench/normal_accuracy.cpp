@@ -14,6 +14,7 @@
 #include "processing/surface/mesh_file.h"
 #include "processing/surface/view_geometry.h"
 #include "rig/session_store.h"
+#include "tests/bench/fit_settings.h"
 #include "tests/bench/machine.h"
 
 namespace lumitexel {
@@ -130,24 +131,19 @@ void print(const std::string& title, const std::vector<Row>& rows, std::size_t l
 
 int main(int argc, char** argv) {
   CLI::App app("Angles between a fit's normals and the true surface's");
-  std::string directory, truth, quality = "draft";
-  int materials = 6, lobes = 1;
-  app.add_option("SESSION", directory, "Session, calibrated or imported")->required();
+  lumitexel::FitSettings settings;
+  std::string truth;
+  settings.ask_for(app);
   app.add_option("--truth", truth, "The true surface, PLY or OBJ, in the frame of the session's mesh")->required();
-  app.add_option("--quality", quality, "draft, standard or reference")->capture_default_str();
-  app.add_option("--materials", materials, "As fit has it; 0: auto")->capture_default_str();
-  app.add_option("--lobes", lobes, "As fit has it")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   using namespace lumitexel;
   NoProgress quiet;
-  const CalibratedSession session = calibrate_session(SessionStore::open(directory, OpenMode::ReadOnly), quiet);
-  FitOptions options = FitOptions::preset(quality);
-  options.materials = materials;
-  options.most_lobes = lobes;
+  const CalibratedSession session = calibrate_session(SessionStore::open(settings.session, OpenMode::ReadOnly), quiet);
+  FitOptions options = settings.options();
   options.normals = NormalChoice::Fitted;
   const FittedModel fitted = fit_model(session, options, StageTimer(), quiet);
   std::printf("%s\n%s, %s quality, %d materials, %d lobes; degrees off the true normal, median and mean\n", machine_line().c_str(),
-              directory.c_str(), quality.c_str(), materials, lobes);
+              settings.session.c_str(), settings.quality.c_str(), settings.materials, settings.lobes);
   std::printf("%-18s %8s   %13s   %13s   %13s   %s\n", "samples", "texels", "mesh", "stereo", "fitted", "rms of fitted over its sigma");
   const std::vector<Row> rows = rows_of(session, fitted.model, TrueNormals(read_mesh(truth)));
   constexpr std::size_t kMost = 10000;

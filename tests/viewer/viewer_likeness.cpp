@@ -10,11 +10,6 @@ namespace {
 
 constexpr double kWhiteFraction = 0.99;
 
-const TexelShare& nearest(const TexturedPoint& point) {
-  return *std::max_element(point.texels.begin(), point.texels.begin() + point.texel_count,
-                           [](const TexelShare& a, const TexelShare& b) { return a.weight < b.weight; });
-}
-
 double white_of(const Image& image) {
   std::vector<float> lit;
   std::copy_if(image.data.begin(), image.data.end(), std::back_inserter(lit), [](float value) { return value > 0.0f; });
@@ -42,7 +37,7 @@ Likeness likeness(const ModelSurface& surface, const View& view, FitStage stage,
       if (!point || !drawn) continue;
       ++result.object_pixels;
       if (point->texel_count == 0) continue;
-      const TexelShare& texel = nearest(*point);
+      const TexelShare& texel = nearest_texel(*point);
       if (static_cast<int>(picture.texel[at]) != texel.x || static_cast<int>(picture.texel[at + 1]) != texel.y) continue;
       ++result.same_texel;
       for (int c = 0; c < model.channels; ++c) {

@@ -8,6 +8,7 @@
 #include "processing/brdf/error_model.h"
 #include "processing/brdf/ordered_sum.h"
 #include "processing/fit/observe.h"
+#include "processing/fit/provenance.h"
 #include "processing/report/viewer/listed_outliers.h"
 #include "processing/surface/best_view.h"
 #include "processing/surface/gather_lumitexels.h"
@@ -125,7 +126,8 @@ void sort_by_view(const CalibratedSession& session, const Model& model, const Ob
 LumitexelRecords lumitexel_records(const Model& model, const CalibratedSession& session, Progress& progress) {
   const json provenance = json::parse(model.provenance_json);
   const RayScene scene(session.mesh);
-  const Atlas atlas = make_atlas(session, choose_best_views(session, scene));
+  LayoutSummary ignored;
+  const Atlas atlas = lay_out(session, choose_best_views(session, scene), layout_of(model), ignored);
   check_session(model, session, provenance, atlas);
   GatheredLumitexels gathered = gather_lumitexels(session, atlas, scene, progress);
   turn_to_fitted(model, gathered.set);

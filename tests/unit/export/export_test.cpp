@@ -9,6 +9,7 @@
 #include "processing/image/raster_file.h"
 #include "rig/whole_file.h"
 #include "tests/unit/bad_input_matcher.h"
+#include "tests/unit/export/reflected_energy.h"
 #include "tests/unit/plain_models.h"
 #include "tests/unit/temporary_folder.h"
 
@@ -28,23 +29,6 @@ Brdf with_lobe(BrdfFamily family, double diffuse, double log_strength, double lo
 GltfMaterial refitted(const Brdf& brdf) {
   const float one[] = {1.0f};
   return MaterialRefit({brdf}).fit(one);
-}
-
-// Reflected share of light that comes from the viewer's angle, by the midpoint rule.
-template <typename F>
-double energy(const F& value, double angle) {
-  const Eigen::Vector3d wo(std::sin(angle), 0, std::cos(angle));
-  constexpr int kRings = 600, kTurns = 600;
-  double sum = 0.0;
-  for (int i = 0; i < kRings; ++i) {
-    const double sin2 = (i + 0.5) / kRings, z = std::sqrt(1.0 - sin2);
-    for (int j = 0; j < kTurns; ++j) {
-      const double turn = 2.0 * std::numbers::pi * (j + 0.5) / kTurns;
-      const Eigen::Vector3d wi(std::sqrt(sin2) * std::cos(turn), std::sqrt(sin2) * std::sin(turn), z);
-      sum += value(lobe_geometry(Eigen::Vector3d::UnitZ(), wi, wo));
-    }
-  }
-  return sum * std::numbers::pi / (kRings * kTurns);
 }
 
 TEST(Export, AGgxBrdfComesBackAsItself) {
@@ -68,8 +52,8 @@ Energies mean_energies(const Brdf& brdf, const GltfMaterial& material, double fr
   Energies mean;
   for (int i = 0; i < kRings; ++i) {
     const double angle = std::asin(std::sqrt(from + (to - from) * (i + 0.5) / kRings));
-    mean.was += energy([&](const LobeGeometry& g) { return evaluate(brdf, 0, g); }, angle) / kRings;
-    mean.is += energy([&](const LobeGeometry& g) { return evaluate(material, g)[0]; }, angle) / kRings;
+    mean.was += reflected_energy([&](const LobeGeometry& g) { return evaluate(brdf, 0, g); }, angle) / kRings;
+    mean.is += reflected_energy([&](const LobeGeometry& g) { return evaluate(material, g)[0]; }, angle) / kRings;
   }
   return mean;
 }
@@ -93,7 +77,7 @@ TEST(Export, EnergyIsNeverOverOne) {
   const Brdf brdf = with_lobe(BrdfFamily::Ggx, 0.6, std::log(0.95), 2.0 * std::log(0.4));  // gives back more than it gets
   const GltfMaterial material = refitted(brdf);
   for (const double angle : {0.1, 0.7, 1.2}) {
-    EXPECT_LE(energy([&](const LobeGeometry& g) { return evaluate(material, g)[0]; }, angle), 1.002) << angle;  // the rule's own error
+    EXPECT_LE(reflected_energy([&](const LobeGeometry& g) { return evaluate(material, g)[0]; }, angle), 1.002) << angle;  // the rule's own error
   }
 }
 

@@ -67,24 +67,10 @@ TEST(IndirectLight, HasTheSameBitsForAnyNumberOfThreads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     results.push_back(indirect_light(session, lumitexels, all, model, FitStage::Projection, {2, 16}));
   }
-  for (const IndirectLight& other : results) EXPECT_EQ(other.reflectance, results[0].reflectance);
-}
-
-TEST(IndirectRemoval, LeavesWhatALampAloneBringsOnceTheModelIsRight) {
-  const CalibratedSession session = bowl_session();
-  LumitexelSet lumitexels = bowl_lumitexels(kAlbedo, 3);
-  const LumitexelSet straight = bowl_lumitexels(kAlbedo, 0);
-  InterreflectionOptions options;
-  options.light = {3, 256};
-  IndirectRemoval removal(session, lumitexels, RayScene(session.mesh), bowl_model(kAlbedo), options);
-  ASSERT_TRUE(removal.can_matter());
-  EXPECT_TRUE(removal.remove(bowl_model(kAlbedo), FitStage::Projection));
-  EXPECT_NEAR(mean(lumitexels.tiles[0].reflectance), mean(straight.tiles[0].reflectance), 0.01 * mean(straight.tiles[0].reflectance));
-  // By the same model nothing changes any more.
-  const std::vector<float> before = lumitexels.tiles[0].reflectance;
-  EXPECT_FALSE(removal.remove(bowl_model(kAlbedo), FitStage::Projection));
-  EXPECT_EQ(lumitexels.tiles[0].reflectance, before);
-  EXPECT_EQ(removal.summary().change.back(), 0.0);
+  for (const IndirectLight& other : results) {
+    EXPECT_EQ(other.reflectance, results[0].reflectance);
+    EXPECT_EQ(other.variance, results[0].variance);
+  }
 }
 
 // The albedo by which the lamp's light explains what is left: what a fit does, in one number.
@@ -92,19 +78,59 @@ double refitted_albedo(const LumitexelSet& lumitexels, const LumitexelSet& unit)
   return mean(lumitexels.tiles[0].reflectance) / mean(unit.tiles[0].reflectance);
 }
 
-TEST(IndirectRemoval, RoundByRoundTheTrueAlbedoIsFound) {
+// Rounds and fits until nothing changes: what is left is what the lamp alone brings, and a further look leaves it alone.
+TEST(IndirectRemoval, EndsAtWhatALampAloneBrings) {
+  const CalibratedSession session = bowl_session();
+  LumitexelSet lumitexels = bowl_lumitexels(kAlbedo, 3);
+  const LumitexelSet straight = bowl_lumitexels(kAlbedo, 0), unit = bowl_lumitexels(1.0, 0);
+  InterreflectionOptions options;
+  options.light = {3, 256};
+  double albedo = refitted_albedo(lumitexels, unit);
+  IndirectRemoval removal(session, lumitexels, RayScene(session.mesh), bowl_model(albedo), options);
+  ASSERT_TRUE(removal.can_matter());
+  int rounds = 0;
+  while (rounds++ < 8 && removal.remove(bowl_model(albedo), FitStage::Projection)) albedo = refitted_albedo(lumitexels, unit);
+  EXPECT_LT(rounds, 8);
+  EXPECT_NEAR(mean(lumitexels.tiles[0].reflectance), mean(straight.tiles[0].reflectance), 0.01 * mean(straight.tiles[0].reflectance));
+  const std::vector<float> before = lumitexels.tiles[0].reflectance;
+  EXPECT_FALSE(removal.remove(bowl_model(albedo), FitStage::Projection));
+  EXPECT_EQ(lumitexels.tiles[0].reflectance, before);
+}
+
+// After so many rounds, each followed by a fit that is right but for the samples.
+double albedo_after(int rounds) {
   const CalibratedSession session = bowl_session();
   LumitexelSet lumitexels = bowl_lumitexels(kAlbedo, 6);
   const LumitexelSet unit = bowl_lumitexels(1.0, 0);
   InterreflectionOptions options;
   options.light = {6, 64};
   double albedo = refitted_albedo(lumitexels, unit);
-  EXPECT_GT(albedo, 1.2 * kAlbedo);  // taken for the lamp's, the light between surfaces makes it a fifth too bright
-  IndirectRemoval removal(session, lumitexels, RayScene(session.mesh), bowl_model(std::min(0.95, albedo)), options);
-  int rounds = 0;
-  while (removal.remove(bowl_model(std::min(0.95, albedo)), FitStage::Projection) && ++rounds < 12) albedo = refitted_albedo(lumitexels, unit);
-  EXPECT_NEAR(albedo, kAlbedo, 0.01);
-  EXPECT_LT(rounds, 12);
+  IndirectRemoval removal(session, lumitexels, RayScene(session.mesh), bowl_model(albedo), options);
+  for (int round = 0; round < rounds; ++round) {
+    if (removal.remove(bowl_model(albedo), FitStage::Projection)) albedo = refitted_albedo(lumitexels, unit);
+  }
+  return albedo;
+}
+
+// Taken for the lamp's, the light between surfaces makes the bowl two fifths too bright. Every preset has to help: draft has one round, standard two,
+// reference four. A tenth is left of a fault of four tenths, then what 64 paths a sample and a bowl of flat triangles leave.
+TEST(IndirectRemoval, TheTrueAlbedoIsFoundWithinTheRoundsOfThePresets) {
+  EXPECT_GT(albedo_after(0), 1.35 * kAlbedo);
+  EXPECT_NEAR(albedo_after(1), kAlbedo, 0.1 * kAlbedo);
+  EXPECT_NEAR(albedo_after(2), kAlbedo, 0.03 * kAlbedo);
+  EXPECT_NEAR(albedo_after(4), kAlbedo, 0.01 * kAlbedo);
+}
+
+TEST(IndirectRemoval, WhereNothingWouldChangeSamplesKeepTheirBits) {
+  const CalibratedSession session = bowl_session();
+  LumitexelSet lumitexels = bowl_lumitexels(kAlbedo, 0);
+  const LumitexelTile before = lumitexels.tiles[0];
+  IndirectRemoval removal(session, lumitexels, RayScene(session.mesh), bowl_model(kAlbedo), {});
+  ASSERT_TRUE(removal.can_matter());
+  EXPECT_FALSE(removal.remove(bowl_model(0.001), FitStage::Projection));  // what follows sends next to nothing
+  EXPECT_EQ(lumitexels.tiles[0].reflectance, before.reflectance);
+  EXPECT_EQ(lumitexels.tiles[0].variance, before.variance);
+  EXPECT_EQ(removal.summary().share, 0.0);
 }
 
 TEST(IndirectRemoval, SaysNoOnAConvexObjectAndTouchesNothing) {

@@ -15,7 +15,7 @@ NormalsWorth trial(const NormalPatch& patch) {
   FitOptions options = FitOptions::preset("draft");
   options.materials = 1;
   const ErrorModel error = error_model(observations, options);
-  return try_normals(patch.session, {atlas, patch.lumitexels, observations, options, error}, patch.bases, patch.label);
+  return try_normals(patch.session, {atlas, patch.lumitexels, observations, options, error});
 }
 
 int said_yes(double slope_rms_rad, int seeds) {

@@ -5,6 +5,7 @@
 #include "processing/evaluation/evaluate_model.h"
 #include "processing/fit/fit_model.h"
 #include "processing/model/model_file.h"
+#include "processing/report/viewer/lumitexel_records.h"
 #include "processing/surface/best_view.h"
 #include "processing/surface/gather_lumitexels.h"
 #include "tests/unit/bad_input_matcher.h"
@@ -136,6 +137,7 @@ double heldout_error(const CalibratedSession& session, LayoutChoice choice, cons
   if (choice == LayoutChoice::Mesh) {
     EXPECT_EQ(model.mesh.texcoords, session.mesh.texcoords);
   }
+  EXPECT_EQ(lumitexel_records(model, session, progress).texel.size(), fitted.summary.lumitexels) << "the viewer finds the fit's lumitexels again";
   return evaluate_model(model, session, progress).heldout[static_cast<std::size_t>(FitStage::Projection)]->sqrt_rms;
 }
 

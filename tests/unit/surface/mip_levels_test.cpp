@@ -41,6 +41,17 @@ TEST(MipLevels, AnAveragedTexelReflectsTheMeanOfItsPartsAcrossMaterials) {
   }
 }
 
+TEST(MipLevels, KeepWhatTheFitTookOut) {
+  Model model = two_materials();
+  model.indirect_bounces = 2;
+  model.indirect = Image(model.width, model.height, 2, 0.25f);
+  model.indirect.at(0, 0, 1) = 0.65f;
+  const Model level = averaged_level(model, 1);
+  EXPECT_EQ(level.indirect_bounces, 2);
+  EXPECT_FLOAT_EQ(level.indirect.at(0, 0, 0), 0.25f);
+  EXPECT_FLOAT_EQ(level.indirect.at(0, 0, 1), 0.35f);
+}
+
 TEST(MipLevels, TexelsWithoutSamplesCountOnlyWhereThereIsNothingElse) {
   Model model = two_materials();
   for (const int x : {0, 2, 3}) {
