@@ -16,11 +16,21 @@ namespace lumitexel {
 enum class ErrorSource { Given, Labels, Estimated, Auto };
 const char* to_string(ErrorSource source);  // "given", "labels", "estimated", "auto"
 
+struct Clustering;
+
+// Materials of the same lumitexels before their samples or normals changed: adapted to what they are now, they are one more candidate
+// beside those found anew, or without `anew` the only one. A search from nothing may end elsewhere for no reason but chance.
+struct MaterialsBefore {
+  const Clustering* clustering = nullptr;
+  bool anew = true;
+};
+
 struct ClusterOptions {
   ErrorSource errors = ErrorSource::Auto;
-  int materials = 4;                    // 0: as many as the samples ask for, up to kMostMaterials
+  int materials = 4;                    // 0: as many as the samples ask for, from a search that begins with about twice kMostMaterials
   std::size_t final_lumitexels = 5000;  // a material's final fit takes about so many of its members
   MaterialFitOptions fit;
+  MaterialsBefore before;
 };
 inline constexpr int kMostMaterials = 12;
 
@@ -43,7 +53,7 @@ void set_labels(const std::vector<int>& label, const LumitexelList& all, std::si
 
 // Learns on `selection` (lumitexel indices, ascending): splits into about twice as many materials as wanted (split_materials.h), lets
 // the mixture settle, merges (merge_materials.h), asks each material anew which lobes it needs, and settles on many of each
-// material's members. Then labels every lumitexel with its most probable material. report(k) is called with the number of
+// material's members, each step beginning with what was known before, if anything was. Then labels every lumitexel with its most probable material. report(k) is called with the number of
 // materials so far.
 Clustering cluster_materials(const Observations& observations, const LumitexelList& selection, const ClusterOptions& options,
                              const std::function<void(int)>& report);

@@ -43,6 +43,31 @@ MaterialSearch with_mean_fits(MaterialSearch search, const Observations& observa
   return search;
 }
 
+// The number of materials and what they are fitted by stay.
+MaterialSearch adapted(const Clustering& before, const Observations& observations, const LumitexelList& selection, const ClusterOptions& options) {
+  MaterialSearch search{before.errors, options.fit, {}};
+  search.fit.estimate_error = before.fit.estimate_error;
+  if (before.fit.mean_fit) search.fit.mean_fit = options.fit.error;
+  double members = 0.0;
+  for (const FittedMaterial& material : before.materials) members += static_cast<double>(material.members);
+  for (const FittedMaterial& material : before.materials) {
+    search.mixture.materials.push_back({material.model.brdf, search.fit.estimate_error ? material.model.error : options.fit.error});
+    search.mixture.share.push_back(std::max(static_cast<double>(material.members), 1.0) / members);
+  }
+  maximise_expectation(search.mixture, observations, selection, search.fit, {kSearchRounds, kSearchSettled});
+  return search;
+}
+
+// From nothing; the most cautious first.
+std::vector<MaterialSearch> found_anew(const Observations& observations, const LumitexelList& selection, const ClusterOptions& options,
+                                       const std::function<void(int)>& report) {
+  const auto search = [&](ErrorSource errors) { return search_with(errors, observations, selection, options, report); };
+  if (options.errors == ErrorSource::Given || options.errors == ErrorSource::Estimated) return {search(options.errors)};
+  MaterialSearch estimated = search(ErrorSource::Estimated), labels = with_mean_fits(estimated, observations, selection, options);
+  if (options.errors == ErrorSource::Labels) return {std::move(labels)};
+  return {search(ErrorSource::Given), std::move(labels), std::move(estimated)};
+}
+
 }  // namespace
 
 void choose_lobes(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels, const Responsibilities& r,
@@ -60,14 +85,15 @@ void choose_lobes(Mixture& mixture, const Observations& observations, const Lumi
 
 MaterialSearch search_for_materials(const Observations& observations, const LumitexelList& selection, const ClusterOptions& options,
                                     const std::function<void(int)>& report) {
-  if (options.errors == ErrorSource::Given) return search_with(ErrorSource::Given, observations, selection, options, report);
-  MaterialSearch estimated = search_with(ErrorSource::Estimated, observations, selection, options, report);
-  if (options.errors == ErrorSource::Estimated) return estimated;
-  MaterialSearch mean = with_mean_fits(estimated, observations, selection, options);
-  if (options.errors == ErrorSource::Labels) return mean;
-  MaterialSearch given = search_with(ErrorSource::Given, observations, selection, options, report);
-  const std::vector<MaterialSearch*> searches{&given, &mean, &estimated};
-  return *searches[best_predictor({&given.mixture, &mean.mixture, &estimated.mixture}, observations, selection)];
+  std::vector<MaterialSearch> searches;
+  if (options.before.clustering != nullptr) searches.push_back(adapted(*options.before.clustering, observations, selection, options));
+  if (searches.empty() || options.before.anew) {
+    for (MaterialSearch& search : found_anew(observations, selection, options, report)) searches.push_back(std::move(search));
+  }
+  if (searches.size() == 1) return std::move(searches.front());
+  std::vector<const Mixture*> mixtures;
+  for (const MaterialSearch& search : searches) mixtures.push_back(&search.mixture);
+  return std::move(searches[best_predictor(mixtures, observations, selection)]);
 }
 
 }  // namespace lumitexel

@@ -80,8 +80,8 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
   const auto fill = [&] {
     fill_atlas(atlas, gathered.set, reflectance.clustering.label, reflectance.weights, reflectance.projection, model);
   };
-  const auto fit_on_mesh_normals = [&](const std::string& pass) {
-    reflectance = fit_reflectance(inputs, pass, model, summary, timer, progress);
+  const auto fit_on_mesh_normals = [&](const MaterialsBefore& before, const std::string& pass) {
+    reflectance = fit_reflectance(inputs, before, pass, model, summary, timer, progress);
     summary.single = error_at(FitStage::Single);
     summary.cluster = error_at(FitStage::Cluster);
     summary.projection = error_at(FitStage::Projection);
@@ -92,9 +92,9 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
     fill();
   };
   // The one BRDF for everything stays that of the mesh's normals: it is the stage before all others.
-  const auto fit_on_fitted_normals = [&](const std::string& pass) {
+  const auto fit_on_fitted_normals = [&](const MaterialsBefore& before, const std::string& pass) {
     const Brdf single = model.single;
-    reflectance = fit_reflectance(inputs, pass, model, summary, timer, progress);
+    reflectance = fit_reflectance(inputs, before, pass, model, summary, timer, progress);
     model.single = single;
     if (options.principal_functions) {
       seek_principal_functions(inputs, reflectance, model, summary, timer, progress);
@@ -104,8 +104,11 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
     summary.normal = error_at(FitStage::Normal);
     fill();
   };
-  const auto fit_again = [&](const std::string& pass) { has_normals(model) ? fit_on_fitted_normals(pass) : fit_on_mesh_normals(pass); };
-  fit_on_mesh_normals("");
+  const auto fit_again = [&](bool anew, const std::string& pass) {
+    const MaterialsBefore before{&reflectance.clustering, anew};
+    has_normals(model) ? fit_on_fitted_normals(before, pass) : fit_on_mesh_normals(before, pass);
+  };
+  fit_on_mesh_normals({}, "");
 
   const auto take_out = [&](IndirectRemoval& removal, FitStage stage) {
     progress.begin("light between surfaces", 1, "rounds");
@@ -122,21 +125,21 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
     if (indirect->can_matter()) changed = take_out(*indirect, last_stage(model));
     if (changed) look();
   }
-  if (auto normals = seek_normals(session, inputs, reflectance.clustering.label, model, summary, timer, progress)) {
+  if (auto normals = seek_normals(session, inputs, reflectance.clustering, model, summary, timer, progress)) {
     turn(normals->normal, gathered.set);
     look();
     keep_before_normals(model, summary);
     set_normal_sigma(gathered.set, normals->sigma_rad, options.normal_fit.prior.coarse_sigma_rad, model);
-    fit_again(" on fitted normals");
+    fit_again(true, " on fitted normals");
   } else if (changed) {
-    fit_again(" without light between surfaces");
+    fit_again(true, " without light between surfaces");
   }
   for (int round = 2; changed && round <= options.interreflections.rounds; ++round) {
     timer.begin("light between surfaces, round " + std::to_string(round));
     changed = take_out(*indirect, last_stage(model));
     if (!changed) break;
     look();
-    fit_again(", round " + std::to_string(round));
+    fit_again(false, ", round " + std::to_string(round));
   }
   if (indirect) {
     summary.indirect = indirect->summary();

@@ -5,7 +5,7 @@
 
 namespace lumitexel {
 
-std::optional<FittedNormals> seek_normals(const CalibratedSession& session, const FitInputs& inputs, const std::vector<int>& label,
+std::optional<FittedNormals> seek_normals(const CalibratedSession& session, const FitInputs& inputs, const Clustering& materials,
                                           const Model& model, FitSummary& summary, StageTimer& timer, Progress& progress) {
   const FitOptions& options = inputs.options;
   if (options.normals == NormalChoice::Mesh) return {};
@@ -14,17 +14,17 @@ std::optional<FittedNormals> seek_normals(const CalibratedSession& session, cons
   if (options.normals == NormalChoice::Auto) {
     timer.begin("are normals worth it");
     progress.begin("are normals worth it", 1, "trials");
-    summary.normals_worth = try_normals(session, inputs);
+    summary.normals_worth = try_normals(session, inputs, materials);
     progress.update(1);
     if (!summary.normals_worth->enough()) return {};
   }
   timer.begin("normals");
   progress.begin("normals", options.normal_fit.steps, "steps");
   const DirectedLumitexels lumitexels(session, inputs.lumitexels);
-  FittedNormals fitted = fit_normals(lumitexels, lumitexel_neighbours(lumitexels, inputs.atlas.width), bases, label, median,
+  FittedNormals fitted = fit_normals(lumitexels, lumitexel_neighbours(lumitexels, inputs.atlas.width), bases, materials.label, median,
                                      options.normal_fit, [&](int step) { progress.update(step); });
   summary.normal_sigma_scale =
-      normal_sigma_scale(session, inputs.lumitexels, inputs.atlas.width, bases, label, median, options.normal_fit);
+      normal_sigma_scale(session, inputs.lumitexels, inputs.atlas.width, bases, materials.label, median, options.normal_fit);
   // Nobody knows less than the prior: where samples say nothing it is what is left, and no disagreement of theirs widens it.
   for (float& sigma : fitted.sigma_rad) {
     sigma = static_cast<float>(std::min(*summary.normal_sigma_scale * static_cast<double>(sigma), options.normal_fit.prior.coarse_sigma_rad));

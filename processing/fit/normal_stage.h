@@ -9,7 +9,7 @@ namespace lumitexel {
 
 // By the model's materials and bases. Nothing where options say so or where left-out photographs do not ask for it; what they said goes into
 // the summary.
-std::optional<FittedNormals> seek_normals(const CalibratedSession& session, const FitInputs& inputs, const std::vector<int>& label,
+std::optional<FittedNormals> seek_normals(const CalibratedSession& session, const FitInputs& inputs, const Clustering& materials,
                                           const Model& model, FitSummary& summary, StageTimer& timer, Progress& progress);
 
 // What stands in the model so far becomes its stages before normals.

@@ -17,12 +17,12 @@ constexpr std::size_t kMostLumitexels = 40000;
 constexpr std::size_t kMostLearnt = 2000;   // lumitexels that the trial's materials are learnt on
 constexpr std::size_t kFewestSamples = 50;  // of a block of the surface in one photograph
 
-// Of the photographs that the fit may see, those that the trial does not.
-std::vector<bool> left_out_views(const CalibratedSession& session) {
+// Of the photographs that the fit may see, those that turn number `turn` of the trial leaves out: over all turns each once.
+std::vector<bool> left_out_views(const CalibratedSession& session, std::size_t turn) {
   std::vector<bool> left_out(session.views.size(), false);
   std::size_t seen = 0;
   for (std::size_t v = 0; v < left_out.size(); ++v) {
-    if (!session.views[v].heldout) left_out[v] = seen++ % kLeftOutEvery == kLeftOutEvery / 2;
+    if (!session.views[v].heldout) left_out[v] = seen++ % kLeftOutEvery == (kLeftOutEvery / 2 + turn) % kLeftOutEvery;
   }
   return left_out;
 }
@@ -36,8 +36,8 @@ using Cells = std::map<std::pair<std::uint32_t, std::uint16_t>, Cell>;  // by bl
 // What a fit to some of the photographs makes of the others. A left-out sample below its surface is predicted to be black.
 class Arm {
  public:
-  Arm(const CalibratedSession& session, const FitInputs& inputs, const LumitexelSet& learnt, const Observations& observations,
-      const LumitexelSet& left_out)
+  Arm(const CalibratedSession& session, const FitInputs& inputs, const Clustering& materials, const LumitexelSet& learnt,
+      const Observations& observations, const LumitexelSet& left_out)
       : left_out_(left_out) {
     FitOptions options = inputs.options;
     options.learning_lumitexels = std::min(options.learning_lumitexels, kMostLearnt);
@@ -45,7 +45,7 @@ class Arm {
     FitSummary summary;
     StageTimer timer;
     NoProgress quiet;
-    reflectance_ = fit_reflectance({inputs.atlas, learnt, observations, options, inputs.error}, "", model_, summary, timer, quiet);
+    reflectance_ = fit_reflectance({inputs.atlas, learnt, observations, options, inputs.error}, {&materials, true}, "", model_, summary, timer, quiet);
     for (const ModelMaterial& material : model_.materials) prepared_.emplace_back(material.basis.begin(), material.basis.end());
     for (const View& view : session.views) eyes_.push_back(view.camera_in_world());
   }
@@ -119,27 +119,25 @@ bool finite(const LumitexelTile& tile, std::size_t sample, std::size_t channels)
 // Without some of the photographs, and only on part of the surface, materials may have nothing to be learnt on.
 bool can_learn(const Observations& observations) { return !select_lumitexels(observations, kMostLearnt).empty(); }
 
-}  // namespace
-
-NormalsWorth try_normals(const CalibratedSession& session, const FitInputs& inputs) {
-  const std::vector<bool> left_out_view = left_out_views(session);
+// Adds what the left-out photographs say; nothing where the others are too few to learn from.
+void judge(const CalibratedSession& session, const FitInputs& inputs, const Clustering& materials, const LumitexelBands& bands,
+           const std::vector<bool>& left_out_view, Cells& cells) {
   std::vector<bool> learnt_view = left_out_view;
   learnt_view.flip();
-  const LumitexelBands bands = lumitexel_bands(inputs.lumitexels, inputs.atlas.width, kMostLumitexels);
   const LumitexelSet learnt = only_views(bands.set, learnt_view), left_out = only_views(bands.set, left_out_view);
+  if (learnt.samples() == 0 || left_out.samples() == 0) return;
   const Observations observations = observe(session, learnt);
-  if (left_out.samples() == 0 || !can_learn(observations)) return {};
-  const Arm on_mesh(session, inputs, learnt, observations, left_out);
+  if (!can_learn(observations)) return;
+  const Arm on_mesh(session, inputs, materials, learnt, observations, left_out);
 
   LumitexelSet turned = learnt, left_out_turned = left_out;
   const FittedNormals fitted = on_mesh.normals(session, learnt, inputs, median_reflectance(observations));
   turn(fitted.normal, turned);
   turn(fitted.normal, left_out_turned);
   const Observations observations_turned = observe(session, turned);
-  if (!can_learn(observations_turned)) return {};
-  const Arm on_fitted(session, inputs, turned, observations_turned, left_out_turned);
+  if (!can_learn(observations_turned)) return;
+  const Arm on_fitted(session, inputs, materials, turned, observations_turned, left_out_turned);
 
-  Cells cells;
   std::size_t number = 0;
   const auto channels = static_cast<std::size_t>(left_out.channels);
   for (std::size_t t = 0; t < left_out.tiles.size(); ++t) {
@@ -153,7 +151,19 @@ NormalsWorth try_normals(const CalibratedSession& session, const FitInputs& inpu
       }
     }
   }
-  return mean_gain(cells);
+}
+
+}  // namespace
+
+NormalsWorth try_normals(const CalibratedSession& session, const FitInputs& inputs, const Clustering& materials) {
+  const LumitexelBands bands = lumitexel_bands(inputs.lumitexels, inputs.atlas.width, kMostLumitexels);
+  Cells cells;
+  NormalsWorth worth;
+  for (std::size_t turn = 0; turn < kLeftOutEvery && !worth.is_clear(); ++turn) {
+    judge(session, inputs, materials, bands, left_out_views(session, turn), cells);
+    worth = mean_gain(cells);
+  }
+  return worth;
 }
 
 }  // namespace lumitexel

@@ -2,6 +2,7 @@
 // normals and once on fitted ones, and what was left out is predicted both ways.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 
 namespace lumitexel {
@@ -15,6 +16,10 @@ struct NormalsWorth {
 
   bool enough() const { return gain > kLeastGain && gain > gain_sigma; }  // false where nothing could be judged
 
+  // Either way, so that other photographs need not be left out as well.
+  bool is_clear() const { return samples > 0 && std::abs(gain - kLeastGain) > kClear * gain_sigma; }
+
+  static constexpr double kClear = 3.0;       // sigmas: two would be met by chance once in five turns
   static constexpr double kLeastGain = 0.02;  // a hundredth of what one sigma costs in each channel or so: less is not worth a map
 };
 

@@ -15,8 +15,9 @@
 namespace lumitexel {
 namespace {
 
-ClusterOptions cluster_options(const FitOptions& options, const ErrorModel& error) {
+ClusterOptions cluster_options(const FitOptions& options, const ErrorModel& error, const MaterialsBefore& before) {
   ClusterOptions cluster;
+  cluster.before = before;
   cluster.errors = options.errors;
   cluster.materials = options.materials;
   cluster.final_lumitexels = options.final_lumitexels;
@@ -28,7 +29,7 @@ ClusterOptions cluster_options(const FitOptions& options, const ErrorModel& erro
 }
 
 Clustering learn_materials(const Observations& observations, const FitOptions& options, const ErrorModel& error,
-                           Progress& progress) {
+                           const MaterialsBefore& before, Progress& progress) {
   const int wanted = options.materials > 0 ? options.materials : kMostMaterials;
   progress.begin("materials", wanted, "materials");
   const auto selection = select_lumitexels(observations, options.learning_lumitexels);
@@ -41,7 +42,7 @@ Clustering learn_materials(const Observations& observations, const FitOptions& o
     const PaperOptions paper{options.materials, options.most_lobes, options.intensity_weight, options.final_lumitexels};
     return paper_clustering(observations, selection, paper, report);
   }
-  return cluster_materials(observations, selection, cluster_options(options, error), report);
+  return cluster_materials(observations, selection, cluster_options(options, error, before), report);
 }
 
 std::vector<LumitexelList> members_of(const Clustering& clustering) {
@@ -145,15 +146,15 @@ ErrorModel error_model(const Observations& observations, const FitOptions& optio
   return error;
 }
 
-Reflectance fit_reflectance(const FitInputs& inputs, const std::string& pass, Model& model, FitSummary& summary, StageTimer& timer,
-                            Progress& progress) {
+Reflectance fit_reflectance(const FitInputs& inputs, const MaterialsBefore& before, const std::string& pass, Model& model, FitSummary& summary,
+                            StageTimer& timer, Progress& progress) {
   const auto& [atlas, lumitexels, observations, options, error] = inputs;
   Reflectance result;
   model.materials.clear();
   summary.prior.clear();
   summary.texels_by_material.clear();
   timer.begin("materials" + pass);
-  result.clustering = learn_materials(observations, options, error, progress);
+  result.clustering = learn_materials(observations, options, error, before, progress);
   summary.errors = result.clustering.errors;
   set_materials(result.clustering, atlas, lumitexels, observations, model);
   timer.begin("projection" + pass);

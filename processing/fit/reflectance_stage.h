@@ -34,8 +34,8 @@ struct Reflectance {
 };
 
 // Fills model.materials and model.single. `pass` goes into the names of the stages.
-Reflectance fit_reflectance(const FitInputs& inputs, const std::string& pass, Model& model, FitSummary& summary, StageTimer& timer,
-                            Progress& progress);
+Reflectance fit_reflectance(const FitInputs& inputs, const MaterialsBefore& before, const std::string& pass, Model& model, FitSummary& summary,
+                            StageTimer& timer, Progress& progress);
 
 // Moves each material's basis where that pays, and projects once more.
 void seek_principal_functions(const FitInputs& inputs, Reflectance& reflectance, Model& model, FitSummary& summary, StageTimer& timer,

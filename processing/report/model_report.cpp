@@ -24,6 +24,7 @@ Json page_data(const ReportSubject& subject) {
           {"coverage", coverage_json(subject.model)},
           {"uncertainty_from", doubt_json(subject)},
           {"normals", normals_json(subject.model)},
+          {"light_between_surfaces", indirect_json(subject.model)},
           {"exposures", exposures_json(subject.exposures)},
           {"calibration", subject.calibration != nullptr ? summary_json(*subject.calibration) : Json(nullptr)},
           {"nearest_materials", nearest_json(subject)}};
@@ -55,6 +56,7 @@ std::string model_report(const ReportSubject& subject, Progress& progress) {
   body += material_section(subject, renderer);
   body += nearest_section(subject);
   body += normals_section(subject, data.at("normals"), renderer, map_view(subject));
+  body += indirect_section(subject, data.at("light_between_surfaces"), map_view(subject));
   body += coverage_section(subject.model, renderer, map_view(subject));
   body += doubt_section(subject, data.at("uncertainty_from"), map_view(subject));
   body += outlier_section(provenance);

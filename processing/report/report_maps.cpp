@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "processing/report/html.h"
 #include "processing/report/report_sections.h"
+#include "processing/report/texel_maps.h"
 #include "processing/report/view_pictures.h"
 
 namespace lumitexel {
@@ -12,37 +12,6 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double kFullSigma = 0.5;  // drawn in full colour: half of the reflectance itself is open
-
-// The texels that were fitted to samples; filled-in ones know nothing of their own.
-std::vector<float> values_where_measured(const Model& model, const Image& map) {
-  std::vector<float> values;
-  for (std::size_t texel = 0; texel < model.material.size(); ++texel) {
-    if (model.material[texel] != Model::kNoMaterial && model.samples.data[texel] > 0.0f) values.push_back(map.data[texel]);
-  }
-  return values;
-}
-
-// Nearest rank; null of no values.
-Json share_below(std::vector<float> values, double share) {
-  if (values.empty()) return nullptr;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return static_cast<double>(*at);
-}
-
-// Near-white is good; few_is_bad: blue towards 0, else red towards `full`. White beside the object.
-Image shown(const Image& map, const Image& normal, double full, bool few_is_bad) {
-  Image picture(map.width, map.height, 3, 1.0f);
-  for (int y = 0; y < map.height; ++y) {
-    for (int x = 0; x < map.width; ++x) {
-      if (normal.at(x, y, 0) == 0.0f && normal.at(x, y, 1) == 0.0f && normal.at(x, y, 2) == 0.0f) continue;
-      const double share = std::clamp(map.at(x, y) / full, 0.0, 1.0);
-      const auto colour = false_colour(few_is_bad ? share - 1.0 : share);
-      std::copy(colour.begin(), colour.end(), &picture.at(x, y));
-    }
-  }
-  return picture;
-}
 
 std::string percent(const Json& share) { return share.is_number() ? html::number(100.0 * share.get<double>(), 2) + " %" : "–"; }
 
@@ -64,23 +33,23 @@ std::string coverage_section(const Model& model, const ViewRenderer& renderer, c
   const Json data = coverage_json(model);
   const Json& samples = data.at("samples_a_texel");
   const Json& sigma = data.at("relative_sigma");
-  const Image normal = renderer.render_aov(view, Aov::Normal);
+  const Image normal = renderer.render_aov(view, Aov::Normal), seen = renderer.render_aov(view, Aov::Samples), open = renderer.render_aov(view, Aov::Sigma);
   const double most = samples.at("most").is_number() ? samples.at("most").get<double>() : 1.0;
   const std::string views =
-      html::figure(html::picture(shown(renderer.render_aov(view, Aov::Samples), normal, most, true), "samples a texel"),
+      html::figure(html::picture(drawn(normal, [&](int x, int y) { return seen.at(x, y) / most - 1.0; }), "samples a texel"),
                    "How many photographs measured each point. Half of the texels have " + count(samples.at("median")) +
                        " or more, nine tenths " + count(samples.at("tenth")) + " or more.") +
       html::colour_scale(false_colour(-1.0), false_colour(0.0), "no photograph", count(samples.at("most")) + " photographs");
   const std::string uncertain =
-      html::figure(html::picture(shown(renderer.render_aov(view, Aov::Sigma), normal, kFullSigma, false), "uncertainty"),
+      figure_with_scale(drawn(normal, [&](int x, int y) { return open.at(x, y) / kFullSigma; }), "uncertainty",
                    "How uncertain the reflectance is, one sigma of its value. Half of the texels are within " + percent(sigma.at("median")) +
-                       ", nine tenths within " + percent(sigma.at("nine_tenths")) + ".") +
-      html::colour_scale(false_colour(0.0), false_colour(1.0), "0 %", percent(Json(kFullSigma)) + " and more");
+                       ", nine tenths within " + percent(sigma.at("nine_tenths")) + ".",
+                        "0 %", percent(Json(kFullSigma)) + " and more");
   return html::section("Where it was measured, and how surely",
                        "Points that few photographs saw lit are less certain. Blue on the left and red on the right is where more "
                        "photographs would help most; what was never measured borrows from its neighbours and is blue and red. Thin lines are edges of the "
                        "atlas's patches, where a texel borrows, too.",
-                       "<div class=\"row two\"><div>" + views + "</div><div>" + uncertain + "</div></div>\n");
+                       "<div class=\"row two\"><div>" + views + "</div>" + uncertain + "</div>\n");
 }
 
 }  // namespace lumitexel

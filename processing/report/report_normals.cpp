@@ -7,7 +7,7 @@
 #include "processing/image/tone_map.h"
 #include "processing/report/html.h"
 #include "processing/report/report_sections.h"
-#include "processing/report/view_pictures.h"
+#include "processing/report/texel_maps.h"
 
 namespace lumitexel {
 namespace {
@@ -28,32 +28,6 @@ double tilt_deg(const Image& tangent, std::size_t texel) {
   return std::atan2(std::hypot(n[0], n[1]), n[2]) / kDegree;
 }
 
-Json at_share(std::vector<double>& values, double share) {
-  if (values.empty()) return nullptr;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
-Json shares_of(std::vector<double> values) {
-  return {{"median", at_share(values, 0.5)}, {"nine_tenths", at_share(values, 0.9)}, {"most", at_share(values, 1.0)}};
-}
-
-// The same surface without anything but its form: with the mesh's own normals, and the sigma of the fitted ones where the renderer looks
-// for the reflectance's.
-Model bare_form(const Model& model) {
-  Model form;
-  form.channels = model.channels;
-  form.mesh = model.mesh;
-  form.width = model.width;
-  form.height = model.height;
-  form.material = model.material;
-  form.normal = Image(model.width, model.height, 3);
-  form.uncertainty = model.normal_sigma;
-  form.samples = model.samples;
-  return form;
-}
-
 Eigen::Vector3d vector_at(const Image& image, int x, int y) { return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)}; }
 
 // White plaster under a light from the left and half as much from the right, each 20 degrees above the picture's plane. No shadows are cast.
@@ -71,26 +45,9 @@ Image plaster(const Image& normal, const View& view) {
   return tone_mapped(shown, 1.0);
 }
 
-// From near-white at 0 to red at `full`; white beside the object.
-template <typename Value>
-Image angles_shown(const Image& normal, double full, Value value_deg) {
-  Image shown(normal.width, normal.height, 3, 1.0f);
-  for (int y = 0; y < shown.height; ++y) {
-    for (int x = 0; x < shown.width; ++x) {
-      if (vector_at(normal, x, y).isZero()) continue;
-      const auto colour = false_colour(std::clamp(value_deg(x, y) / full, 0.0, 1.0));
-      std::copy(colour.begin(), colour.end(), &shown.at(x, y));
-    }
-  }
-  return shown;
-}
-
 std::string degrees(const Json& value) { return value.is_number() ? html::number(value.get<double>(), 2) + "°" : "–"; }
 
-std::string figure_with_scale(const Image& picture, const std::string& what, double full_deg, const std::string& caption) {
-  return "<div>" + html::figure(html::picture(picture, what), caption) +
-         html::colour_scale(false_colour(0.0), false_colour(1.0), "0°", html::number(full_deg) + "° and more") + "</div>";
-}
+std::string full_angle(double full_deg) { return html::number(full_deg) + "° and more"; }
 
 std::string text_of(const Json& data) {
   const auto count = [&](const char* key) { return html::number(data.at(key).get<double>(), 8); };
@@ -105,31 +62,31 @@ std::string text_of(const Json& data) {
 Json normals_json(const Model& model) {
   if (!has_normals(model)) return nullptr;
   const ExportedNormals normals = export_normals(model);
-  std::vector<double> tilts, sigmas;
+  std::vector<float> tilts, sigmas;
   for (std::size_t texel = 0; texel < model.material.size(); ++texel) {
     if (!measured(model, texel)) continue;
-    tilts.push_back(tilt_deg(normals.tangent, texel));
-    sigmas.push_back(model.normal_sigma.data[texel] / kDegree);
+    tilts.push_back(static_cast<float>(tilt_deg(normals.tangent, texel)));
+    sigmas.push_back(static_cast<float>(model.normal_sigma.data[texel] / kDegree));
   }
   const auto unmoved = std::count_if(tilts.begin(), tilts.end(), [](double tilt) { return tilt * kDegree < kUnmovedTilt_rad; });
   return {{"texels_measured", tilts.size()},
           {"texels_on_the_meshs_normal", unmoved},
           {"within_deg", kUnmovedTilt_rad / kDegree},
-          {"tilt_against_mesh_deg", shares_of(std::move(tilts))},
-          {"sigma_deg", shares_of(std::move(sigmas))}};
+          {"tilt_against_mesh_deg", spread_of(tilts)},
+          {"sigma_deg", spread_of(sigmas)}};
 }
 
 std::string normals_section(const ReportSubject& subject, const Json& data, const ViewRenderer& renderer, const View& view) {
   if (!data.is_object()) return "";
-  const Model form = bare_form(subject.model);
+  const Model form = carrying(subject.model, subject.model.normal_sigma);
   const ViewRenderer form_renderer(form);
   const Image before = form_renderer.render_aov(view, Aov::Normal), after = renderer.render_aov(view, Aov::Normal);
   const Image sigma = form_renderer.render_aov(view, Aov::Sigma);
-  const Image tilt_picture = angles_shown(after, kFullTilt_deg, [&](int x, int y) {
+  const Image tilt_picture = drawn(after, [&](int x, int y) {
     const Eigen::Vector3d a = vector_at(before, x, y), b = vector_at(after, x, y);
-    return std::atan2(a.cross(b).norm(), a.dot(b)) / kDegree;
+    return std::atan2(a.cross(b).norm(), a.dot(b)) / kDegree / kFullTilt_deg;
   });
-  const Image sigma_picture = angles_shown(after, kFullSigma_deg, [&](int x, int y) { return sigma.at(x, y) / kDegree; });
+  const Image sigma_picture = drawn(after, [&](int x, int y) { return sigma.at(x, y) / kDegree / kFullSigma_deg; });
   const Json &tilt = data.at("tilt_against_mesh_deg"), &sigmas = data.at("sigma_deg");
   return html::section(
       "Fine relief: the normals", text_of(data),
@@ -139,15 +96,17 @@ std::string normals_section(const ReportSubject& subject, const Json& data, cons
           html::figure(html::picture(plaster(after, view), "the fitted normals under raking light"),
                        "After: the fitted normals, the same plaster and lights.") +
           "</div><div class=\"row two\">" +
-          figure_with_scale(tilt_picture, "tilt against the mesh", kFullTilt_deg,
+          figure_with_scale(tilt_picture, "tilt against the mesh",
                             "How far each normal was turned away from the mesh's: half of the measured texels by at most " +
-                                degrees(tilt.at("median")) + ", nine tenths by at most " + degrees(tilt.at("nine_tenths")) + ".") +
-          figure_with_scale(sigma_picture, "sigma of the normals", kFullSigma_deg,
+                                degrees(tilt.at("median")) + ", nine tenths by at most " + degrees(tilt.at("nine_tenths")) + ".",
+                            "0°", full_angle(kFullTilt_deg)) +
+          figure_with_scale(sigma_picture, "sigma of the normals",
                             "How uncertain the fitted normal is, one sigma per axis: half of the measured texels at most " +
                                 degrees(sigmas.at("median")) + ", nine tenths at most " + degrees(sigmas.at("nine_tenths")) +
                                 ". It follows from the scatter of the samples, the neighbours and the mesh, widened by how far two halves of the "
                                 "photographs disagree. What all of them share, such as a wrong pose or material, comes on top: on a test object of "
-                                "known form errors were twice as large.") +
+                                "known form errors were twice as large.",
+                            "0°", full_angle(kFullSigma_deg)) +
           "</div>\n");
 }
 

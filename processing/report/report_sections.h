@@ -60,6 +60,12 @@ std::string doubt_section(const ReportSubject& subject, const nlohmann::json& do
 nlohmann::json normals_json(const Model& model);
 std::string normals_section(const ReportSubject& subject, const nlohmann::json& normals, const ViewRenderer& renderer, const View& view);
 
+// ---- light between surfaces (report_indirect.cpp)
+// {"bounces", "estimated_most" (beside a lamp's light) and "found_share" (of the samples): {"median", "nine_tenths", "most"}} over the texels that
+// were fitted to samples; null of a model that nobody looked for it in.
+nlohmann::json indirect_json(const Model& model);
+std::string indirect_section(const ReportSubject& subject, const nlohmann::json& data, const View& view);
+
 // ---- known materials (report_nearest.cpp)
 nlohmann::json nearest_json(const ReportSubject& subject);  // a list a material, the three nearest: {"name", "distance"}
 std::string nearest_section(const ReportSubject& subject);     // empty where none is known

@@ -91,6 +91,39 @@ TEST(ClusterMaterials, TheSingleBrdfIsTheSameWhateverTheErrorsOfTheMaterials) {
   }
 }
 
+double share_of_pairs_alike(const std::vector<int>& a, const std::vector<int>& b) {
+  double alike = 0, pairs = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (std::size_t j = i + 1; j < a.size(); j += 7, ++pairs) alike += (a[i] == a[j]) == (b[i] == b[j]);
+  }
+  return alike / pairs;
+}
+
+// Samples have changed a little, as when light between surfaces was taken out: materials known before are adapted, and stay apart.
+TEST(ClusterMaterials, MaterialsKnownBeforeAreAdapted) {
+  constexpr double kAlike = 0.99;  // another noise makes hardly a texel ambiguous
+  const ThreeMaterials before(7), after(8);
+  const Clustering known = cluster(before.observations, 3);
+  ClusterOptions options = options_for(3);
+  options.before = {&known, false};
+  const Clustering adapted = cluster_materials(after.observations, select_lumitexels(after.observations, 500), options, [](int) {});
+  ASSERT_EQ(adapted.materials.size(), 3u);
+  EXPECT_GE(share_of_pairs_alike(adapted.label, known.label), kAlike);
+  EXPECT_NE(adapted.materials[0].model.brdf.diffuse, known.materials[0].model.brdf.diffuse) << "they follow the samples";
+  EXPECT_NEAR(adapted.materials[0].model.brdf.diffuse[0], known.materials[0].model.brdf.diffuse[0], 0.05 * known.materials[0].model.brdf.diffuse[0]);
+}
+
+// What was known before is a candidate, not the answer: one material for three predicts left-out samples worse than a search from nothing.
+TEST(ClusterMaterials, MaterialsKnownBeforeGiveWayToBetterOnes) {
+  const ThreeMaterials scene(9);
+  const Clustering poor = cluster(scene.observations, 1);
+  ClusterOptions options = options_for(3);
+  options.before = {&poor, true};
+  EXPECT_EQ(cluster_materials(scene.observations, select_lumitexels(scene.observations, 500), options, [](int) {}).materials.size(), 3u);
+  options.before.anew = false;
+  EXPECT_EQ(cluster_materials(scene.observations, select_lumitexels(scene.observations, 500), options, [](int) {}).materials.size(), 1u);
+}
+
 TEST(ClusterMaterials, ResultsDoNotDependOnTheNumberOfThreads) {
   const ThreeMaterials scene(5);
   const Clustering many = cluster(scene.observations, 3);

@@ -154,6 +154,30 @@ TEST_F(ModelReport, SaysHowFarNormalsWereTurnedAndHowSurely) {
   EXPECT_THAT(html, HasSubstr("20° and more"));
 }
 
+TEST_F(ModelReport, ShowsLightBetweenSurfacesWhereSomebodyLooked) {
+  EXPECT_THAT(page(false), Not(HasSubstr("Light between surfaces")));
+  EXPECT_TRUE(nlohmann::json::parse(report_json({"bird", model_})).at("light_between_surfaces").is_null());
+
+  model_.indirect = Image(4, 4, 2);
+  model_.samples.data[0] = 0.0f;  // not measured: takes no part
+  for (std::size_t texel = 0; texel < 16; ++texel) {
+    model_.indirect.data[2 * texel] = texel < 8 ? 0.125f : 0.25f;
+    model_.indirect.data[2 * texel + 1] = texel == 0 ? 1.0f : 0.0625f;
+  }
+  EXPECT_THAT(page(false), HasSubstr("nothing was taken out"));
+  EXPECT_THAT(page(false), Not(HasSubstr(", as found")));
+
+  model_.indirect_bounces = 2;
+  const auto data = nlohmann::json::parse(report_json({"bird", model_})).at("light_between_surfaces");
+  EXPECT_EQ(data.at("bounces"), 2);
+  EXPECT_EQ(data.at("estimated_most").at("median"), 0.125 + 0.125) << "seven texels of the lower value, eight of the higher one";
+  EXPECT_EQ(data.at("found_share").at("most"), 0.0625);
+  const std::string html = page(false);
+  EXPECT_THAT(html, HasSubstr("2 bounces"));
+  EXPECT_THAT(html, HasSubstr("light between surfaces, as found"));
+  EXPECT_THAT(html, HasSubstr("nine tenths at most 6.2 %"));
+}
+
 // Every cell of every table that is one number, with or without a unit. The first column names the rows.
 std::vector<std::string> numbers_in_tables(const std::string& html) {
   std::vector<std::string> numbers;
