@@ -14,7 +14,8 @@ struct MaterialSearch {
 };
 
 // Splits into more materials than wanted (split_materials.h), lets the mixture settle, merges (merge_materials.h). Auto: with the given
-// error model and with estimated ones. Where there is more than one candidate, materials known before among them, error_choice.h decides. report: as of cluster_materials.
+// error model and with estimated ones. Where there is more than one candidate, materials known before among them, error_choice.h decides.
+// report: as of cluster_materials.
 MaterialSearch search_for_materials(const Observations& observations, const LumitexelList& selection, const ClusterOptions& options,
                                     const std::function<void(int)>& report);
 

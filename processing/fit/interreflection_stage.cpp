@@ -14,6 +14,14 @@ constexpr double kNewEnough = 0.005;    // rms change of the samples followed ov
 
 double square(double x) { return x * x; }
 
+// The share of the model's indirect light that is to be taken, from sums over a lumitexel: t of the header, so that (measured - t) / indirect.
+// All of it where a sum is not positive, and nothing follows from them.
+double share_to_take(double measured, double fitted, double indirect) {
+  if (!(measured > 0.0 && fitted > 0.0 && indirect > 0.0)) return 1.0;
+  const double straight = 2.0 * measured / (1.0 + std::sqrt(1.0 + 4.0 * measured * indirect / square(fitted)));
+  return (measured - straight) / indirect;
+}
+
 }  // namespace
 
 IndirectRemoval::IndirectRemoval(const CalibratedSession& session, LumitexelSet& lumitexels, const RayScene& scene, const Model& model,
@@ -39,18 +47,6 @@ IndirectRemoval::IndirectRemoval(const CalibratedSession& session, LumitexelSet&
 bool IndirectRemoval::can_matter() const {
   return static_cast<double>(summary_.concerned) > kFewestOfAll * static_cast<double>(bound_.size());
 }
-
-namespace {
-
-// The share of the model's indirect light that is to be taken, from sums over a lumitexel: t of the header, so that (measured - t) / indirect.
-// All of it where a sum is not positive, and nothing follows from them.
-double share_to_take(double measured, double fitted, double indirect) {
-  if (!(measured > 0.0 && fitted > 0.0 && indirect > 0.0)) return 1.0;
-  const double straight = 2.0 * measured / (1.0 + std::sqrt(1.0 + 4.0 * measured * indirect / square(fitted)));
-  return (measured - straight) / indirect;
-}
-
-}  // namespace
 
 // Lumitexel by lumitexel and channel by channel. The paths' variance is the lumitexel's mean: a sample's own goes with how much its few paths
 // happened to find, and would make samples count more from which too little is taken.

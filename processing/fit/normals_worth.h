@@ -1,5 +1,5 @@
-// Whether an object needs normals of its own: photographs are left out, everything is fitted to the others as a fit would do it (normal_trial.h), once on the mesh's
-// normals and once on fitted ones, and what was left out is predicted both ways.
+// Whether an object needs normals of its own: photographs are left out, everything is fitted to the others as a fit would do it
+// (normal_trial.h), once on the mesh's normals and once on fitted ones, and what was left out is predicted both ways.
 #pragma once
 
 #include <cmath>
@@ -16,10 +16,10 @@ struct NormalsWorth {
 
   bool enough() const { return gain > kLeastGain && gain > gain_sigma; }  // false where nothing could be judged
 
-  // Either way, so that other photographs need not be left out as well.
-  bool is_clear() const { return samples > 0 && std::abs(gain - kLeastGain) > kClear * gain_sigma; }
+  // Either way, so that other photographs need not be left out as well. Never without a sigma: then nothing could be judged.
+  bool is_clear() const { return gain_sigma > 0.0 && std::abs(gain - kLeastGain) > kClear * gain_sigma; }
 
-  static constexpr double kClear = 3.0;       // sigmas: two would be met by chance once in five turns
+  static constexpr double kClear = 3.0;       // sigmas: with two, five looks would end too early by chance in one trial of five or so
   static constexpr double kLeastGain = 0.02;  // a hundredth of what one sigma costs in each channel or so: less is not worth a map
 };
 

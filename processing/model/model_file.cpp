@@ -105,12 +105,6 @@ bool is_model(const fs::path& directory) {
   return document.is_object() && document.contains("format") && document.at("format") == kFormat;
 }
 
-// "out/bird/" and "out/bird" are the same folder; its sibling's name must not land inside it.
-fs::path without_trailing_slash(const fs::path& directory) {
-  const fs::path absolute = fs::absolute(directory).lexically_normal();
-  return absolute.has_filename() ? absolute : absolute.parent_path();
-}
-
 fs::path sibling(const fs::path& target, const std::string& suffix) {
   return target.parent_path() / ("." + target.filename().string() + suffix);
 }
@@ -237,6 +231,11 @@ void read_basis(const fs::path& path, const ModelHeader& header, Model& model) {
 }
 
 }  // namespace
+
+fs::path without_trailing_slash(const fs::path& directory) {
+  const fs::path absolute = fs::absolute(directory).lexically_normal();
+  return absolute.has_filename() ? absolute : absolute.parent_path();
+}
 
 void check_model_directory(const fs::path& directory) {
   const fs::path target = without_trailing_slash(directory);

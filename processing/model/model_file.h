@@ -8,8 +8,11 @@
 
 namespace lumitexel {
 
-// Throws BadInput if `directory` exists and is neither empty nor a model: what write_model would refuse, to be asked before
-// the long work.
+// The folder's own path, absolute: "out/bird/" and "out/bird" are the same, and a sibling's name must not land inside it.
+std::filesystem::path without_trailing_slash(const std::filesystem::path& directory);
+
+// Throws BadInput if `directory` exists and is neither empty nor a model, or cannot be written: what write_model would refuse, to be asked
+// before the long work.
 void check_model_directory(const std::filesystem::path& directory);
 
 // Writes a whole new directory beside `directory` and renames it into place; an existing model is replaced.

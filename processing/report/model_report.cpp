@@ -38,6 +38,7 @@ std::string model_report(const ReportSubject& subject, Progress& progress) {
   const Json data = page_data(subject);
   const Json& provenance = data.at("provenance");
   const ViewRenderer renderer(subject.model);
+  const View view = map_view(subject);
   const bool compared = subject.session != nullptr && subject.evaluation != nullptr;
 
   std::string body = headline(subject, data.at("summary"));
@@ -55,10 +56,10 @@ std::string model_report(const ReportSubject& subject, Progress& progress) {
   if (compared) body += photograph_error_section(*subject.evaluation);
   body += material_section(subject, renderer);
   body += nearest_section(subject);
-  body += normals_section(subject, data.at("normals"), renderer, map_view(subject));
-  body += indirect_section(subject, data.at("light_between_surfaces"), map_view(subject));
-  body += coverage_section(subject.model, renderer, map_view(subject));
-  body += doubt_section(subject, data.at("uncertainty_from"), map_view(subject));
+  body += normals_section(subject, data.at("normals"), renderer, view);
+  body += indirect_section(subject, data.at("light_between_surfaces"), view);
+  body += coverage_section(subject.model, renderer, view);
+  body += doubt_section(subject, data.at("uncertainty_from"), view);
   body += outlier_section(provenance);
   if (subject.session != nullptr) body += setup_section(*subject.session);
   body += exposure_section(subject.exposures);

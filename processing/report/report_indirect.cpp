@@ -9,10 +9,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kBound = 0, kFound = 1;          // channels of Model::indirect
+constexpr int kBound = 0, kFound = 1;                 // channels of Model::indirect
 constexpr double kFullBound = 0.5, kFullFound = 0.3;  // drawn in full colour
-
-std::string percent(const Json& share) { return share.is_number() ? html::number(100.0 * share.get<double>(), 2) + " %" : "–"; }
 
 std::string picture(const ReportSubject& subject, int channel, double full, const View& view, const std::string& what, const std::string& caption) {
   const Model form = carrying(subject.model, subject.model.indirect, channel);

@@ -13,8 +13,6 @@ using Json = nlohmann::json;
 
 constexpr double kFullSigma = 0.5;  // drawn in full colour: half of the reflectance itself is open
 
-std::string percent(const Json& share) { return share.is_number() ? html::number(100.0 * share.get<double>(), 2) + " %" : "–"; }
-
 std::string count(const Json& value) { return value.is_number() ? html::number(value.get<double>()) : "–"; }
 
 }  // namespace

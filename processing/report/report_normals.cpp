@@ -18,10 +18,6 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kUnmovedTilt_rad = 0.1 * kDegree;  // below it a normal is called the mesh's: far below any sigma
 constexpr double kFullTilt_deg = 20.0, kFullSigma_deg = 10.0;
 
-bool measured(const Model& model, std::size_t texel) {
-  return model.material[texel] != Model::kNoMaterial && model.samples.data[texel] > 0.0f;
-}
-
 // Angles in degrees; from both components, since the cosine of a small angle keeps few of its digits.
 double tilt_deg(const Image& tangent, std::size_t texel) {
   const float* n = &tangent.data[3 * texel];
@@ -64,7 +60,7 @@ Json normals_json(const Model& model) {
   const ExportedNormals normals = export_normals(model);
   std::vector<float> tilts, sigmas;
   for (std::size_t texel = 0; texel < model.material.size(); ++texel) {
-    if (!measured(model, texel)) continue;
+    if (!is_measured(model, texel)) continue;
     tilts.push_back(static_cast<float>(tilt_deg(normals.tangent, texel)));
     sigmas.push_back(static_cast<float>(model.normal_sigma.data[texel] / kDegree));
   }
@@ -105,7 +101,7 @@ std::string normals_section(const ReportSubject& subject, const Json& data, cons
                                 degrees(sigmas.at("median")) + ", nine tenths at most " + degrees(sigmas.at("nine_tenths")) +
                                 ". It follows from the scatter of the samples, the neighbours and the mesh, widened by how far two halves of the "
                                 "photographs disagree. What all of them share, such as a wrong pose or material, comes on top: on a test object of "
-                                "known form errors were twice as large.",
+                                "known form errors were more than twice as large.",
                             "0°", full_angle(kFullSigma_deg)) +
           "</div>\n");
 }

@@ -6,6 +6,7 @@
 #include "processing/report/html.h"
 #include "processing/report/measured_area.h"
 #include "processing/report/report_sections.h"
+#include "processing/report/texel_maps.h"
 #include "processing/report/view_pictures.h"
 
 namespace lumitexel {
@@ -34,8 +35,6 @@ std::string in_words(double sqrt_rms) {
 }
 
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-std::string percent(double share) { return html::number(100.0 * share, 2) + " %"; }
 
 // The one with the median clipped error of its kind, so that neither the best nor the worst is shown. Held-out ones if there are any.
 std::optional<std::size_t> typical_view(const Evaluation& evaluation) {
@@ -68,7 +67,7 @@ Json prediction_json(const Evaluation& evaluation) {
 }
 
 std::string prediction_text(const Json& prediction) {
-  const auto number = [&](const char* key) { return prediction.at(key).is_number() ? percent(prediction.at(key).get<double>()) : "–"; };
+  const auto number = [&](const char* key) { return percent(prediction.at(key)); };
   const auto count = prediction.at("photographs").get<std::int64_t>();
   const bool heldout = prediction.at("kept_out_of_the_fit").get<bool>();
   const std::string photographs = count == 1 ? "One photograph" : std::to_string(count) + " photographs";

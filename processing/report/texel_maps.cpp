@@ -8,10 +8,16 @@
 
 namespace lumitexel {
 
+bool is_measured(const Model& model, std::size_t texel) {
+  return model.material[texel] != Model::kNoMaterial && model.samples.data[texel] > 0.0f;
+}
+
+std::string percent(const nlohmann::json& share) { return share.is_number() ? html::number(100.0 * share.get<double>(), 2) + " %" : "–"; }
+
 std::vector<float> values_where_measured(const Model& model, const Image& map, int channel) {
   std::vector<float> values;
   for (std::size_t texel = 0; texel < model.material.size(); ++texel) {
-    if (model.material[texel] == Model::kNoMaterial || model.samples.data[texel] <= 0.0f) continue;
+    if (!is_measured(model, texel)) continue;
     values.push_back(map.data[texel * static_cast<std::size_t>(map.channels) + static_cast<std::size_t>(channel)]);
   }
   return values;

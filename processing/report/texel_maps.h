@@ -10,13 +10,19 @@
 
 namespace lumitexel {
 
-// Channel `channel` at the texels that were fitted to samples; filled-in ones know nothing of their own.
+// Fitted to samples of its own; filled-in texels know nothing.
+bool is_measured(const Model& model, std::size_t texel);
+
+// Channel `channel` of the map at the measured texels.
 std::vector<float> values_where_measured(const Model& model, const Image& map, int channel = 0);
 
 // The value that this share of all does not exceed, nearest rank; null of no values.
 nlohmann::json share_below(std::vector<float> values, double share);
 // {"median", "nine_tenths", "most"}
 nlohmann::json spread_of(const std::vector<float>& values);
+
+// As "6.2 %"; an en dash for null.
+std::string percent(const nlohmann::json& share);
 
 // The same surface without anything but its form: with the mesh's own normals, and the map's channel where a renderer looks for the
 // reflectance's sigma (Aov::Sigma).

@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 
+#include "processing/model/model_file.h"
 #include "processing/report/viewer/viewer_page.h"
 #include "processing/report/viewer/viewer_sky.h"
 #include "rig/console/command.h"
@@ -16,11 +17,6 @@ namespace fs = std::filesystem;
 struct ViewSettings {
   std::string model, session, environment, out;
 };
-
-fs::path without_slash(const fs::path& model) {
-  const fs::path whole = fs::absolute(model).lexically_normal();
-  return whole.has_filename() ? whole : whole.parent_path();
-}
 
 ViewerPage page_of(const std::string& title, const Model& model, const ViewSettings& settings, CommandContext& context) {
   std::optional<Image> sky;
@@ -40,7 +36,7 @@ std::string samples_text(std::size_t every) {
 
 CommandResult view_command(const ViewSettings& settings, CommandContext& context) {
   const Model model = model_given("MODEL", settings.model);
-  const fs::path folder = without_slash(settings.model);
+  const fs::path folder = without_trailing_slash(settings.model);
   const fs::path out = settings.out.empty() ? fs::path(folder.string() + ".html") : fs::path(settings.out);
   const ViewerPage page = page_of(folder.filename().string(), model, settings, context);
   write_whole_file(out, page.html);

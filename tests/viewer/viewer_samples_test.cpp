@@ -70,9 +70,9 @@ TEST(LumitexelRecords, AreTheSamplesThatTheFitSaw) {
     EXPECT_EQ(count_of(records, verdict), rejected.at(kNames[verdict - 1]).get<std::size_t>()) << kNames[verdict - 1];
   }
   EXPECT_GT(count_of(records, 0), 5000u);
-  // Samples are counted before normals are fitted, and again after that to find outliers among them.
+  // On the fitted normals, both times.
   EXPECT_EQ(count_of(records, 0), provenance.at("outliers").at("samples").get<std::size_t>());
-  EXPECT_EQ(count_of(records, 0) + count_of(records, kBelowFittedNormal), provenance.at("samples").get<std::size_t>());
+  EXPECT_EQ(count_of(records, 0), provenance.at("samples").get<std::size_t>());
 }
 
 // The strongest that can be said of predictions and measurements together: the fit's own figure, but for the maps' single precision.

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -138,6 +140,19 @@ TEST(Export, GltfStatesTheLossAndItsBufferIsWhole) {
   EXPECT_EQ(document.at("accessors").at(0).at("count"), model.mesh.positions.size());
   EXPECT_EQ(read_raster(out / "base.png").code_values.at(1, 1, 0), std::round(255.0f * refit_maps(model, quiet).base.at(1, 1, 0)));
   EXPECT_THROW(export_model(model, ExportFormat::Gltf, out, quiet), BadInput) << "nothing is overwritten";
+}
+
+// The session's z is up, glTF's y.
+TEST(Export, AGltfSceneStandsUpright) {
+  const TemporaryFolder folder;
+  const Model model = model_of(sphere_mesh(8, 4), 4, 4, with_lobe(BrdfFamily::Ggx, 0.1, std::log(0.2), 2.0 * std::log(0.5)));
+  NoProgress quiet;
+  export_model(model, ExportFormat::Gltf, folder.path() / "gltf", quiet);
+  std::ifstream file(folder.path() / "gltf" / "model.gltf");
+  const auto turn = nlohmann::json::parse(file).at("nodes").at(0).at("rotation").get<std::array<double, 4>>();
+  const Eigen::Quaterniond rotation(turn[3], turn[0], turn[1], turn[2]);
+  EXPECT_TRUE((rotation * Eigen::Vector3d::UnitZ()).isApprox(Eigen::Vector3d::UnitY(), 1e-12));
+  EXPECT_TRUE((rotation * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d::UnitX(), 1e-12));
 }
 
 class StatedLoss : public testing::TestWithParam<std::pair<ExportFormat, const char*>> {};
