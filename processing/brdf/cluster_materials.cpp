@@ -53,6 +53,15 @@ const char* to_string(ErrorSource source) {
   return "auto";
 }
 
+const char* to_string(LobeShapes shapes) {
+  switch (shapes) {
+    case LobeShapes::Shared: return "shared";
+    case LobeShapes::Separate: return "separate";
+    case LobeShapes::Auto: break;
+  }
+  return "auto";
+}
+
 void set_labels(const std::vector<int>& label, const LumitexelList& all, std::size_t lumitexels, Clustering& clustering) {
   for (const int material : label) ++clustering.materials[static_cast<std::size_t>(material)].members;
   const auto largest = std::max_element(clustering.materials.begin(), clustering.materials.end(),
@@ -73,6 +82,8 @@ Clustering cluster_materials(const Observations& observations, const LumitexelLi
   MaterialFitOptions settled = options.fit;
   settled.estimate_error = search.fit.estimate_error;
   settled.mean_fit = search.fit.mean_fit;
+  settled.family = search.fit.family;
+  settled.shared_shape = search.fit.shared_shape;
   result.errors = search.errors;
   result.fit = settled;
   std::vector<BrdfFit> fits;
@@ -84,7 +95,8 @@ Clustering cluster_materials(const Observations& observations, const LumitexelLi
   r = maximise_expectation(mixture, observations, finalists, settled, {kFinalRounds, kFinalSettled});
   choose_lobes(mixture, observations, finalists, r, settled, fits);
   // What all is measured against: the best mean prediction, whatever the materials were fitted by.
-  MaterialFitOptions mean = options.fit;
+  MaterialFitOptions mean = settled;
+  mean.mean_fit.reset();
   mean.estimate_error = false;
   const Brdf start = fit_material(samples_of(observations, selection), observations.channels, nullptr, mean).model.brdf;
   result.single = fit_material(samples_of(observations, thinned(all, options.final_lumitexels)), observations.channels, &start, mean).model;

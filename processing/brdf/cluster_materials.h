@@ -16,6 +16,10 @@ namespace lumitexel {
 enum class ErrorSource { Given, Labels, Estimated, Auto };
 const char* to_string(ErrorSource source);  // "given", "labels", "estimated", "auto"
 
+// One lobe shape for all channels of a material or one a channel; Auto: the latter where that predicts left-out samples better.
+enum class LobeShapes { Shared, Separate, Auto };
+const char* to_string(LobeShapes shapes);  // "shared", "separate", "auto"
+
 struct Clustering;
 
 // Materials of the same lumitexels before their samples or normals changed: adapted to what they are now, they are one more candidate
@@ -29,7 +33,9 @@ struct ClusterOptions {
   ErrorSource errors = ErrorSource::Auto;
   int materials = 4;                    // 0: as many as the samples ask for, from a search that begins with about twice kMostMaterials
   std::size_t final_lumitexels = 5000;  // a material's final fit takes about so many of its members
-  MaterialFitOptions fit;
+  MaterialFitOptions fit;               // its shared_shape is what `lobe_shapes` says
+  bool any_family = false;              // true: fit.family, or another where that predicts left-out samples better
+  LobeShapes lobe_shapes = LobeShapes::Shared;
   MaterialsBefore before;
 };
 inline constexpr int kMostMaterials = 12;
@@ -44,7 +50,7 @@ struct Clustering {
   MaterialModel single;                   // one BRDF for everything, the best mean prediction under the given error model
   std::vector<FittedMaterial> materials;  // fewer than asked for if the samples do not tell so many apart
   ErrorSource errors = ErrorSource::Given;  // which source it was
-  MaterialFitOptions fit;                 // as every material was fitted at the end
+  MaterialFitOptions fit;                 // as every material was fitted at the end: which family, which shapes
   std::vector<int> label;                 // material of every lumitexel; those without samples get the largest material
 };
 

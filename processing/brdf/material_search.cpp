@@ -3,16 +3,19 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "processing/brdf/error_choice.h"
 #include "processing/brdf/merge_materials.h"
+#include "processing/brdf/select_lumitexels.h"
 #include "processing/brdf/split_materials.h"
 
 namespace lumitexel {
 namespace {
 
-constexpr int kSearchRounds = 24, kMeanRounds = 8;  // of expectation-maximisation
+constexpr int kSearchRounds = 24, kRefitRounds = 8;  // of expectation-maximisation
 constexpr double kSearchSettled = 1e-4;             // of log likelihood a sample and round
+constexpr std::size_t kMostJudges = 20'000;         // lumitexels: a tenth of a second for each candidate and material
 constexpr int kMostExtra = 8;                       // materials beyond those wanted that splitting may make
 
 // While materials are told apart they all have a lobe: what a matte whole hides, a part may show.
@@ -24,6 +27,7 @@ MaterialSearch search_with(ErrorSource errors, const Observations& observations,
   search.fit.choose_lobes = false;
   search.fit.most_lobes = std::min(1, options.fit.most_lobes);
   search.fit.estimate_error = errors != ErrorSource::Given;
+  search.fit.shared_shape = options.lobe_shapes != LobeShapes::Separate;
   const MaterialFit whole = fit_material(samples_of(observations, selection), observations.channels, nullptr, search.fit);
   search.mixture = split_materials(whole, observations, selection, most, search.fit);
   maximise_expectation(search.mixture, observations, selection, search.fit, {kSearchRounds, kSearchSettled});
@@ -31,15 +35,20 @@ MaterialSearch search_with(ErrorSource errors, const Observations& observations,
   return search;
 }
 
+// The same materials after search.fit has changed: fitted as it says now, then settled.
+void refit(MaterialSearch& search, const Observations& observations, const LumitexelList& selection) {
+  std::vector<BrdfFit> fits;
+  const Responsibilities r = responsibilities(search.mixture, observations, selection);
+  choose_lobes(search.mixture, observations, selection, r, search.fit, fits);
+  maximise_expectation(search.mixture, observations, selection, search.fit, {kRefitRounds, kSearchSettled});
+}
+
 // The materials that estimated errors told apart, each with the best mean prediction for a BRDF.
 MaterialSearch with_mean_fits(MaterialSearch search, const Observations& observations, const LumitexelList& selection,
                               const ClusterOptions& options) {
   search.errors = ErrorSource::Labels;
   search.fit.mean_fit = options.fit.error;
-  std::vector<BrdfFit> fits;
-  const Responsibilities r = responsibilities(search.mixture, observations, selection);
-  choose_lobes(search.mixture, observations, selection, r, search.fit, fits);
-  maximise_expectation(search.mixture, observations, selection, search.fit, {kMeanRounds, kSearchSettled});
+  refit(search, observations, selection);
   return search;
 }
 
@@ -48,6 +57,8 @@ MaterialSearch adapted(const Clustering& before, const Observations& observation
   MaterialSearch search{before.errors, options.fit, {}};
   search.fit.estimate_error = before.fit.estimate_error;
   if (before.fit.mean_fit) search.fit.mean_fit = options.fit.error;
+  search.fit.family = before.fit.family;
+  search.fit.shared_shape = before.fit.shared_shape;
   double members = 0.0;
   for (const FittedMaterial& material : before.materials) members += static_cast<double>(material.members);
   for (const FittedMaterial& material : before.materials) {
@@ -66,6 +77,52 @@ std::vector<MaterialSearch> found_anew(const Observations& observations, const L
   MaterialSearch estimated = search(ErrorSource::Estimated), labels = with_mean_fits(estimated, observations, selection, options);
   if (options.errors == ErrorSource::Labels) return {std::move(labels)};
   return {search(ErrorSource::Given), std::move(labels), std::move(estimated)};
+}
+
+// Who have not learnt; where too few are left, the learners themselves.
+LumitexelList judges(const Observations& observations, const LumitexelList& selection) {
+  const LumitexelList usable = with_samples(observations, kFewestSamples);
+  LumitexelList others;
+  std::set_difference(usable.begin(), usable.end(), selection.begin(), selection.end(), std::back_inserter(others));
+  return others.size() < selection.size() ? selection : thinned(others, kMostJudges);
+}
+
+MaterialSearch best_of(std::vector<MaterialSearch> searches, const Observations& observations, const LumitexelList& selection) {
+  if (searches.size() == 1) return std::move(searches.front());
+  std::vector<const Mixture*> mixtures;
+  for (const MaterialSearch& search : searches) mixtures.push_back(&search.mixture);
+  return std::move(searches[best_predictor(mixtures, observations, judges(observations, selection))]);
+}
+
+MaterialSearch with_family(MaterialSearch search, BrdfFamily family, const Observations& observations, const LumitexelList& selection) {
+  search.fit.family = family;
+  refit(search, observations, selection);
+  return search;
+}
+
+MaterialSearch with_separate_shapes(MaterialSearch search, const Observations& observations, const LumitexelList& selection) {
+  search.fit.shared_shape = false;
+  refit(search, observations, selection);
+  return search;
+}
+
+// Each richer choice against the one before it: first whose lobes, then how many shapes.
+MaterialSearch with_lobes_asked_for(MaterialSearch search, const Observations& observations, const LumitexelList& selection,
+                                    const ClusterOptions& options) {
+  if (options.fit.most_lobes == 0) return search;
+  if (options.any_family) {
+    std::vector<MaterialSearch> families{std::move(search)};
+    for (const BrdfFamily family : {BrdfFamily::Lafortune, BrdfFamily::Ggx, BrdfFamily::Ward}) {
+      if (family != families.front().fit.family) families.push_back(with_family(families.front(), family, observations, selection));
+    }
+    search = best_of(std::move(families), observations, selection);
+  }
+  if (options.lobe_shapes == LobeShapes::Auto && search.fit.shared_shape && observations.channels > 1) {
+    std::vector<MaterialSearch> shapes{std::move(search)};
+    shapes.push_back(with_separate_shapes(shapes.front(), observations, selection));
+    search = best_of(std::move(shapes), observations, selection);
+  }
+  return search;
 }
 
 }  // namespace
@@ -90,10 +147,9 @@ MaterialSearch search_for_materials(const Observations& observations, const Lumi
   if (searches.empty() || options.before.anew) {
     for (MaterialSearch& search : found_anew(observations, selection, options, report)) searches.push_back(std::move(search));
   }
-  if (searches.size() == 1) return std::move(searches.front());
-  std::vector<const Mixture*> mixtures;
-  for (const MaterialSearch& search : searches) mixtures.push_back(&search.mixture);
-  return std::move(searches[best_predictor(mixtures, observations, selection)]);
+  MaterialSearch best = best_of(std::move(searches), observations, selection);
+  const bool known = options.before.clustering != nullptr && !options.before.anew;
+  return known ? best : with_lobes_asked_for(std::move(best), observations, selection, options);
 }
 
 }  // namespace lumitexel

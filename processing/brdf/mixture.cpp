@@ -71,10 +71,10 @@ LumitexelList thinned(const LumitexelList& list, std::size_t most) {
   return some;
 }
 
-LumitexelList with_samples(const Observations& observations) {
+LumitexelList with_samples(const Observations& observations, std::size_t fewest) {
   LumitexelList some;
   for (std::size_t i = 0; i < observations.lumitexels(); ++i) {
-    if (!observations.of(i).empty()) some.push_back(i);
+    if (observations.of(i).size() >= fewest) some.push_back(i);
   }
   return some;
 }

@@ -30,8 +30,8 @@ using LumitexelList = std::vector<std::size_t>;  // indices into Observations, a
 
 // Every so manieth, so that at most `most` remain.
 LumitexelList thinned(const LumitexelList& list, std::size_t most);
-// Those with at least one sample.
-LumitexelList with_samples(const Observations& observations);
+// Those with at least so many samples.
+LumitexelList with_samples(const Observations& observations, std::size_t fewest = 1);
 
 Responsibilities responsibilities(const Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels);
 

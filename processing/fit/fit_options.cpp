@@ -37,7 +37,7 @@ FitOptions FitOptions::preset(const std::string& quality) {
 
 FitOptions as_published(FitOptions options) {
   options.method = FitMethod::Paper;
-  options.shared_lobe_shape = false;
+  options.lobe_shapes = LobeShapes::Separate;
   options.normals = NormalChoice::Mesh;
   options.interreflections.wanted = false;
   options.plain_projection = options.principal_functions = true;

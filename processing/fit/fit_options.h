@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "processing/brdf/cluster_materials.h"
@@ -33,7 +34,7 @@ struct FitOptions {
   FitMethod method = FitMethod::Lumitexel;
   LayoutOptions layout;
   int materials = 4;                        // 0: as many as the samples ask for
-  BrdfFamily family = BrdfFamily::Lafortune;
+  std::optional<BrdfFamily> family = BrdfFamily::Lafortune;  // none: whichever predicts left-out samples best
   int most_lobes = 1;                       // each must be asked for by the samples; with the paper's method it is the number
   bool principal_functions = false;         // tried for each material, and kept where left-out lumitexels are predicted better
   NormalChoice normals = NormalChoice::Auto;
@@ -43,7 +44,7 @@ struct FitOptions {
   double intensity_weight = 0.3;            // s of the paper's eq. 6; only the paper's method looks at it
   std::size_t learning_lumitexels = 10000;  // that the materials are learnt on
   std::size_t final_lumitexels = 5000;      // of its own that each material is fitted to at the end
-  bool shared_lobe_shape = true;            // one lobe shape for all channels of a material
+  LobeShapes lobe_shapes = LobeShapes::Shared;  // of a material's channels
   bool plain_projection = false;            // the paper's least squares for the weights, without a prior
   // What no model on the coarse mesh can predict: a share of each prediction, and a share of the session's median
   // reflectance under everything. Both found on held-out photographs of two sessions; see the README.

@@ -32,6 +32,8 @@ struct FitSummary {
   RejectedSamples unusable;          // gathered, but not finite or below the surface
   ErrorModel error;                  // that the fit started from, or was given
   ErrorSource errors = ErrorSource::Given;  // whose error models the materials have, never Auto
+  BrdfFamily family = BrdfFamily::Lafortune;     // of the materials' lobes
+  LobeShapes lobe_shapes = LobeShapes::Shared;   // never Auto
   std::vector<std::size_t> texels_by_material, texels_before_normals;  // the second only where normals were fitted
   std::vector<PriorChoice> prior;    // per material, of the last stage
   StageError single, cluster, projection;

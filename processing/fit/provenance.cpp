@@ -85,7 +85,7 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
   object["session_key"] = session.key;
   object["options"] = {{"quality", options.quality},
                        {"method", options.method == FitMethod::Paper ? "paper" : "lumitexel"},
-                       {"family", to_string(options.family)},
+                       {"family", options.family ? to_string(*options.family) : "auto"},
                        {"most_lobes", options.most_lobes},
                        {"principal_functions", options.principal_functions},
                        {"normals", to_string(options.normals)},
@@ -96,12 +96,15 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
                        {"atlas_size", options.layout.size},
                        {"learning_lumitexels", options.learning_lumitexels},
                        {"final_lumitexels", options.final_lumitexels},
-                       {"shared_lobe_shape", options.shared_lobe_shape},
+                       {"lobe_shapes", to_string(options.lobe_shapes)},
                        {"plain_projection", options.plain_projection},
                        {"errors", to_string(options.errors)},
                        {"relative_error", summary.error.relative},
                        {"error_floor", summary.error.floor}};
-  object["errors"] = to_string(summary.errors);  // whose they are, never "auto"
+  // What came of the choices: never "auto".
+  object["errors"] = to_string(summary.errors);
+  object["family"] = to_string(summary.family);
+  object["lobe_shapes"] = to_string(summary.lobe_shapes);
   object["materials"] = summary.texels_by_material.size();
   object["layout"] = layout_json(summary.layout);
   object["lumitexels"] = summary.lumitexels;

@@ -21,9 +21,10 @@ ClusterOptions cluster_options(const FitOptions& options, const ErrorModel& erro
   cluster.errors = options.errors;
   cluster.materials = options.materials;
   cluster.final_lumitexels = options.final_lumitexels;
-  cluster.fit.family = options.family;
+  cluster.fit.family = options.family.value_or(BrdfFamily::Lafortune);
+  cluster.any_family = !options.family;
   cluster.fit.most_lobes = options.most_lobes;
-  cluster.fit.shared_shape = options.shared_lobe_shape;
+  cluster.lobe_shapes = options.lobe_shapes;
   cluster.fit.error = error;
   return cluster;
 }
@@ -156,6 +157,8 @@ Reflectance fit_reflectance(const FitInputs& inputs, const MaterialsBefore& befo
   timer.begin("materials" + pass);
   result.clustering = learn_materials(observations, options, error, before, progress);
   summary.errors = result.clustering.errors;
+  summary.family = result.clustering.fit.family;
+  summary.lobe_shapes = result.clustering.fit.shared_shape ? LobeShapes::Shared : LobeShapes::Separate;
   set_materials(result.clustering, atlas, lumitexels, observations, model);
   timer.begin("projection" + pass);
   result.weights = project_all(observations, result.clustering, model, options, summary, progress);

@@ -16,7 +16,10 @@ Json options_json(const TradeoffSetting& setting) {
   const FitOptions& options = setting.options;
   return {{"quality", options.quality},
           {"method", options.method == FitMethod::Paper ? "paper" : "lumitexel"},
-          {"family", to_string(options.family)},
+          {"family", options.family ? to_string(*options.family) : "auto"},
+          {"lobe_shapes", to_string(options.lobe_shapes)},
+          {"normals", to_string(options.normals)},
+          {"interreflections", options.interreflections.wanted},
           {"most_lobes", options.most_lobes},
           {"principal_functions", options.principal_functions},
           {"materials", options.materials},

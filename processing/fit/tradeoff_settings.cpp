@@ -10,7 +10,8 @@ namespace {
 constexpr const char* kReferenceSetting = "reference";
 constexpr const char* kPaperSetting = "paper";
 
-// 10,000 learning lumitexels, one lobe, Lafortune lobes, errors by left-out samples and all views are the standard preset itself.
+// 10,000 learning lumitexels, one Lafortune lobe of one shape for all channels, errors and normals by left-out samples, light
+// between surfaces taken out and all views are the standard preset itself.
 std::vector<TradeoffSetting> all_settings(int materials) {
   std::vector<TradeoffSetting> settings;
   const auto add = [&](const std::string& name, const std::string& what, const std::string& quality = "standard") -> TradeoffSetting& {
@@ -28,6 +29,13 @@ std::vector<TradeoffSetting> all_settings(int materials) {
   add("errors-given", "30 % errors everywhere, nothing estimated").options.errors = ErrorSource::Given;
   add("lobes-2", "up to two lobes a material").options.most_lobes = 2;
   add("ggx", "GGX lobes").options.family = BrdfFamily::Ggx;
+  add("family-auto", "lobes of the family that predicts best").options.family.reset();
+  add("lobe-shapes-auto", "a lobe shape for each channel where that predicts better").options.lobe_shapes = LobeShapes::Auto;
+  add("normals-mesh", "the mesh's normals, nothing fitted").options.normals = NormalChoice::Mesh;
+  add("interreflections-off", "light between surfaces left in").options.interreflections.wanted = false;
+  FitOptions& plain = add("plain", "neither normals nor light between surfaces").options;
+  plain.normals = NormalChoice::Mesh;
+  plain.interreflections.wanted = false;
   FitOptions& paper = add(kPaperSetting, "clustering, fits and projection as published").options;
   paper = as_published(paper);
   for (const std::size_t views : {16u, 12u, 8u}) {

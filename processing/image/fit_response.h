@@ -46,7 +46,7 @@ struct ResponseFit {
   std::vector<ResponsePoint> points;  // over the range that the samples cover
   double chi_square = 0;              // Wald's statistic of the straight line; freedoms: how many it has
   int freedoms = 0;
-  double largest_departure = 0;  // from a straight line through the origin, relative, over `points`
+  double largest_departure = 0;  // from a straight line through the origin, relative, over `points`: at least so much
   double residual_scale = 0;     // root of the residuals' reduced chi-square; 1 if the noise model is right
   // Of linear_dn, from the residuals: merge with it. A linear sensor's is no guide, for the scale of the curve is free.
   double electrons_per_dn = 0;

@@ -17,8 +17,8 @@ struct FitSettings {
   std::string session, out, quality = "standard", materials = "4", method = "lumitexel", family = "lafortune", errors = "auto";
   int lobes = 1;
   double intensity_weight = 0.3;
-  bool separate_lobes = false, plain_projection = false, principal_functions = false;
-  std::string normals, interreflections, layout = "auto";
+  bool plain_projection = false, principal_functions = false;
+  std::string lobe_shapes, normals, interreflections, layout = "auto";
   int atlas_size = 0;
 };
 
@@ -27,7 +27,14 @@ using Words = std::vector<std::pair<std::string, Value>>;
 
 Words<std::string> quality_words() { return {{"draft", "draft"}, {"standard", "standard"}, {"reference", "reference"}}; }
 Words<FitMethod> method_words() { return {{"lumitexel", FitMethod::Lumitexel}, {"paper", FitMethod::Paper}}; }
-Words<BrdfFamily> family_words() { return words_by_to_string(std::vector{BrdfFamily::Lafortune, BrdfFamily::Ggx, BrdfFamily::Ward}); }
+// None: auto.
+Words<std::optional<BrdfFamily>> family_words() {
+  Words<std::optional<BrdfFamily>> words;
+  for (const BrdfFamily family : {BrdfFamily::Lafortune, BrdfFamily::Ggx, BrdfFamily::Ward}) words.emplace_back(to_string(family), family);
+  words.emplace_back("auto", std::nullopt);
+  return words;
+}
+Words<LobeShapes> shape_words() { return words_by_to_string(std::vector{LobeShapes::Shared, LobeShapes::Separate, LobeShapes::Auto}); }
 Words<ErrorSource> error_words() {
   return words_by_to_string(std::vector{ErrorSource::Auto, ErrorSource::Given, ErrorSource::Labels, ErrorSource::Estimated});
 }
@@ -50,7 +57,7 @@ FitOptions fit_options(const FitSettings& settings) {
   options.most_lobes = settings.lobes;
   options.intensity_weight = settings.intensity_weight;
   options.principal_functions = settings.principal_functions;
-  options.shared_lobe_shape = !settings.separate_lobes;
+  if (!settings.lobe_shapes.empty()) options.lobe_shapes = named_value("--lobe-shapes", settings.lobe_shapes, shape_words());
   options.plain_projection = settings.plain_projection;
   const std::string normals = settings.normals.empty() ? (options.method == FitMethod::Paper ? "mesh" : "auto") : settings.normals;
   options.normals = named_value("--normals", normals, normal_words());
@@ -59,6 +66,7 @@ FitOptions fit_options(const FitSettings& settings) {
   if (options.method == FitMethod::Paper) {
     if (options.materials == 0) throw BadInput("--materials", "auto with --method paper", "a number: the paper does not choose it");
     if (options.family != BrdfFamily::Lafortune) throw BadInput("--family", settings.family + " with --method paper", "lafortune");
+    if (!settings.lobe_shapes.empty()) throw BadInput("--lobe-shapes", settings.lobe_shapes + " with --method paper", "no such option: the paper's are separate");
     if (options.errors != ErrorSource::Auto) throw BadInput("--errors", settings.errors + " with --method paper", "no such option");
     FitOptions published = as_published(options);
     published.normals = options.normals;
@@ -134,6 +142,17 @@ std::string error_line(const FitSettings& settings, const FitSummary& summary) {
               settings.errors == "auto" ? ", which predicted left-out samples best" : ", as told");
 }
 
+// Only what was left to the samples.
+std::string lobes_line(const FitSettings& settings, const FitSummary& summary) {
+  std::string text;
+  if (settings.family == "auto") text += line("lobes: %s, the family that predicted left-out samples best\n", to_string(summary.family));
+  if (settings.lobe_shapes == "auto") {
+    text += line("lobe shapes: %s: a shape for each colour channel %s left-out samples better\n", to_string(summary.lobe_shapes),
+                 summary.lobe_shapes == LobeShapes::Separate ? "predicted" : "did not predict");
+  }
+  return text;
+}
+
 std::string normals_line(const FitSummary& summary) {
   if (!summary.normals_worth) return "";
   const NormalsWorth& worth = *summary.normals_worth;
@@ -177,6 +196,7 @@ std::string fit_text(const FitSettings& settings, const FitSummary& summary) {
   if (summary.unseen_triangles > 0) text += line("  %zu triangles are seen by no view\n", summary.unseen_triangles);
   text += layout_text(summary.layout);
   text += error_line(settings, summary);
+  text += lobes_line(settings, summary);
   text += normals_line(summary);
   text += indirect_line(summary);
   text += rms_table(summary);
@@ -218,7 +238,7 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
   command->add_option("--method", settings->method,
                       "lumitexel, or paper: clustering, fits and projection as published (Lensch et al. 2003), for comparison")
       ->capture_default_str();
-  command->add_option("--family", settings->family, "Lobes of this family: " + words_of(family_words()))->capture_default_str();
+  command->add_option("--family", settings->family, "Lobes of this family: " + words_of(family_words()) + ": whichever predicts left-out samples best")->capture_default_str();
   command->add_option("--lobes", settings->lobes, "Most lobes of a material; each must be asked for by its samples")
       ->check(CLI::Range(0, 3))
       ->capture_default_str();
@@ -248,8 +268,9 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
                       "Of the paper's method: what intensity counts beside colour when materials are told apart")
       ->check(CLI::Range(1e-3, 1.0))
       ->capture_default_str();
-  command->add_flag("--separate-lobes", settings->separate_lobes,
-                    "Give every colour channel a lobe shape of its own, as the paper does, instead of one for all");
+  command->add_option("--lobe-shapes", settings->lobe_shapes,
+                      "shared: one lobe shape for all colour channels of a material; separate: one a channel, as in the paper; auto: "
+                      "separate where that predicts left-out samples better (default: shared, with --method paper separate)");
   command->add_flag("--plain-projection", settings->plain_projection,
                     "Project texels by least squares without a prior, as the paper does: closer to the photographs of the "
                     "fit, farther from others");

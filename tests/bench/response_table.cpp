@@ -103,6 +103,7 @@ void print_row(int bits, const CurvedResponse& truth, const Options& options) {
   Errors ours, debevec, robertson;
   std::vector<ResponseFit> fits;
   double residual_scale = 0.0, iterations = 0.0, kinks = 0.0;
+  int curves = 0;
   for (int trial = 0; trial < options.trials; ++trial) {
     const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(trial);
     const std::vector<Frame> frames =
@@ -114,6 +115,7 @@ void print_row(int bits, const CurvedResponse& truth, const Options& options) {
       residual_scale += fit.residual_scale;
       iterations += fit.iterations;
       kinks += fit.kinks;
+      curves += fit.curve ? 1 : 0;
     }
     if (bits != 8 || options.profile) continue;
     debevec.add(opencv_errors(*cv::createCalibrateDebevec(300), frames, truth, sensor));
@@ -122,7 +124,7 @@ void print_row(int bits, const CurvedResponse& truth, const Options& options) {
   const double n = std::max(1.0, static_cast<double>(fits.size()));
   std::printf("%2d bits %-16s", bits, truth.name.c_str());
   ours.print("ours");
-  std::printf(" (%zu/%d, residuals %.3f, %.0f iterations, %.1f kinks)", fits.size(), options.trials, residual_scale / n,
+  std::printf(" (%zu/%d, %d curves, residuals %.3f, %.0f iterations, %.1f kinks)", fits.size(), options.trials, curves, residual_scale / n,
               iterations / n, kinks / n);
   if (bits == 8 && !options.profile) {
     debevec.print("Debevec");

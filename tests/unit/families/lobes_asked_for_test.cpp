@@ -1,0 +1,72 @@
+// Another family's lobes, or a lobe shape for each channel, only where the samples ask for them.
+#include <gtest/gtest.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <atomic>
+#include <cmath>
+
+#include "processing/brdf/cluster_materials.h"
+#include "tests/unit/families/known_brdfs.h"
+#include "tests/unit/synthetic_lumitexels.h"
+
+namespace lumitexel {
+namespace {
+
+constexpr int kSeeds = 100, kWanted = 95;
+
+Brdf with_exponents(double red, double green, double blue) {
+  Brdf brdf = known_brdf(BrdfFamily::Lafortune, {{0.5, 1.0, kMirrorAim}});
+  const std::array<double, 3> exponents{red, green, blue};
+  for (std::size_t c = 0; c < 3; ++c) brdf.lobes[0][c].log_shape = std::log(exponents[c]);
+  return brdf;
+}
+
+// What a fit left to choose both chose, of one material of 200 lumitexels with 5 % noise.
+MaterialFitOptions chosen(const Brdf& truth, int seed) {
+  std::mt19937 random(static_cast<unsigned>(seed));
+  Observations observations;
+  add_lumitexels(observations, truth, 200, 6, 0.05, random);
+  ClusterOptions options;
+  options.materials = 1;
+  options.errors = ErrorSource::Estimated;  // as noise that is noise allows; the others only take longer
+  options.fit.error = {0.05, 1e-3};
+  options.any_family = true;
+  options.lobe_shapes = LobeShapes::Auto;
+  return cluster_materials(observations, with_samples(observations), options, [](int) {}).fit;
+}
+
+template <typename Right>
+int seeds_of(const Brdf& truth, Right right) {
+  std::atomic<int> count = 0;
+  oneapi::tbb::parallel_for(1, kSeeds + 1, [&](int seed) {
+    if (right(chosen(truth, seed))) ++count;
+  });
+  testing::Test::RecordProperty("seeds_of_100", count);
+  return count;
+}
+
+bool is_plain(const MaterialFitOptions& fit) { return fit.family == BrdfFamily::Lafortune && fit.shared_shape; }
+
+TEST(LobesAskedFor, LafortunesOfOneShapeStayAsTheyAre) {
+  EXPECT_GE(seeds_of(with_exponents(20.0, 20.0, 20.0), is_plain), kWanted);
+}
+
+TEST(LobesAskedFor, AMatteMaterialAsksForNothing) {
+  Brdf matte = with_exponents(20.0, 20.0, 20.0);
+  matte.lobes.clear();
+  EXPECT_GE(seeds_of(matte, is_plain), kWanted);
+}
+
+TEST(LobesAskedFor, ShapesThatDifferAreTakenApart) {
+  EXPECT_GE(seeds_of(with_exponents(10.0, 20.0, 40.0), [](const MaterialFitOptions& fit) { return !fit.shared_shape; }), kWanted);
+}
+
+TEST(LobesAskedFor, TheTrueFamilyIsFound) {
+  for (const BrdfFamily family : {BrdfFamily::Ggx, BrdfFamily::Ward}) {
+    const Brdf truth = known_brdf(family, {KnownLobe{0.15, 0.2}});
+    EXPECT_GE(seeds_of(truth, [&](const MaterialFitOptions& fit) { return fit.family == family; }), kWanted) << to_string(family);
+  }
+}
+
+}  // namespace
+}  // namespace lumitexel
