@@ -9,7 +9,6 @@
 namespace lumitexel {
 namespace {
 
-constexpr std::size_t kVariations = 2;
 constexpr std::size_t kMostOthers = kMaxBasis - 1 - kVariations;
 constexpr std::size_t kMostBordering = 3;
 constexpr double kDiffuseFactor = 1.5, kExponentFactor = 1.5;

@@ -8,6 +8,8 @@
 
 namespace lumitexel {
 
+inline constexpr std::size_t kVariations = 2;
+
 // For each material: first itself, then two variations of itself (more and less diffuse light, with a sharper and a
 // broader lobe), then up to five others: those that border on it most (neighbour_counts[a][b]: pairs of adjacent texels of
 // materials a and b), then those most like it. At most kMaxBasis in all.

@@ -50,9 +50,10 @@ class PrincipalProblem {
   // Projects every lumitexel on the basis: the cost, and the weights.
   double project(const std::vector<Brdf>& basis, std::vector<BasisVector>& weights) const {
     const PriorPrecision precision(basis, observations_.channels);
+    const BasisValues values(basis, material_, Precision::Double);
     weights.resize(lumitexels_.size());
     return ordered_sum(lumitexels_.size(), 0.0, [&](std::size_t l, double& sum) {
-      const TexelSystem system = texel_system(observations_.of(lumitexels_[l]), observations_.channels, basis, material_, error_);
+      const TexelSystem system = texel_system(observations_.of(lumitexels_[l]), observations_.channels, values, error_);
       BasisMatrix matrix = system.matrix;
       BasisVector right = system.right;
       precision.add_to(prior_, matrix, right);
@@ -65,10 +66,11 @@ class PrincipalProblem {
   // With the weights held where projection left them: what it would move of them is second order.
   NormalEquations linearise(const Eigen::VectorXd& values, const std::vector<Brdf>& basis, const std::vector<BasisVector>& weights) const {
     const NormalEquations zero{Eigen::MatrixXd::Zero(size_, size_), Eigen::VectorXd::Zero(size_), 0.0};
+    const BasisValues predictions(basis, material_, Precision::Double);
     std::vector<BrdfSlopes> models;
     for (std::size_t k = 0; k < layouts_.size(); ++k) models.emplace_back(layouts_[k], values.segment(offsets_[k], layouts_[k].size()));
     NormalEquations sums = ordered_sum(lumitexels_.size(), zero, [&](std::size_t l, NormalEquations& block) {
-      const TexelSystem system = texel_system(observations_.of(lumitexels_[l]), observations_.channels, basis, material_, error_);
+      const TexelSystem system = texel_system(observations_.of(lumitexels_[l]), observations_.channels, predictions, error_);
       const auto samples = observations_.of(lumitexels_[l]);
       for (std::size_t s = 0; s < samples.size(); ++s) add(models, samples[s], system.samples[s], weights[l], block);
     });

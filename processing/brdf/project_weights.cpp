@@ -62,11 +62,6 @@ double relative_sigma(const TexelSystem& system, const NnlsSolution& solution, B
   return std::isfinite(relative) ? relative : 1.0;  // nothing is known
 }
 
-struct Candidates {
-  std::vector<TexelPrior> priors = candidate_priors();
-  PriorPrecision precision;
-};
-
 // What leaving samples out costs with one candidate.
 struct LeftOut {
   double tempered = 0;  // tempered deviations
@@ -80,67 +75,63 @@ double tempered(double squares, int channels) {
 }
 
 // Adds the cost of each sample of the texel, predicted from the others, per candidate.
-void leave_one_out(std::span<const Observation> samples, int channels, const std::vector<Brdf>& basis, const Brdf& material,
-                   const ErrorModel& error, const Candidates& candidates, std::vector<LeftOut>& sums) {
-  const TexelSystem system = texel_system(samples, channels, basis, material, error);
+void leave_one_out(std::span<const Observation> samples, const TexelBasis& basis, const std::vector<TexelPrior>& candidates,
+                   std::vector<LeftOut>& sums) {
+  const TexelSystem system = texel_system(samples, basis.channels, basis.values, basis.error);
   for (const SampleEquations& left_out : system.samples) {
     const BasisMatrix matrix = system.matrix - left_out.whitened.transpose() * left_out.whitened;
     const BasisVector right = system.right - left_out.whitened.transpose() * left_out.target;
-    for (std::size_t p = 0; p < candidates.priors.size(); ++p) {
+    for (std::size_t p = 0; p < candidates.size(); ++p) {
       BasisVector weights = material_alone(matrix.rows());
-      if (!nothing_varies(candidates.priors[p])) {
+      if (!nothing_varies(candidates[p])) {
         BasisMatrix with_prior = matrix;
         BasisVector right_with_prior = right;
-        candidates.precision.add_to(candidates.priors[p], with_prior, right_with_prior);
+        basis.prior.add_to(candidates[p], with_prior, right_with_prior);
         weights = solve_nnls(with_prior, right_with_prior).weights;
       }
       const double squares = (left_out.whitened * weights - left_out.target).squaredNorm();
       sums[p].plain += (left_out.predicted * weights - left_out.measured).squaredNorm();
-      sums[p].tempered += tempered(squares, channels);
+      sums[p].tempered += tempered(squares, basis.channels);
     }
   }
 }
 
 }  // namespace
 
-TexelWeights project_texel(std::span<const Observation> samples, int channels, const std::vector<Brdf>& basis, const Brdf& material,
-                           const ErrorModel& error, const TexelPrior& prior) {
+TexelWeights project_texel(std::span<const Observation> samples, const TexelBasis& basis, const TexelPrior& prior) {
   TexelWeights result;
-  result.weight.assign(basis.size(), 0.0f);
+  result.weight.assign(basis.values.bases(), 0.0f);
   result.weight[0] = 1.0f;
-  result.relative_sigma = static_cast<float>(samples.empty() ? 1.0 : error.relative);
+  result.relative_sigma = static_cast<float>(samples.empty() ? 1.0 : basis.error.relative);
   if (samples.empty() || nothing_varies(prior)) return result;
-  const TexelSystem system = texel_system(samples, channels, basis, material, error);
-  BasisMatrix matrix = system.matrix, known = error.independence * system.matrix;  // samples that err together tell less
+  const TexelSystem system = texel_system(samples, basis.channels, basis.values, basis.error);
+  BasisMatrix matrix = system.matrix, known = basis.error.independence * system.matrix;  // samples that err together tell less
   BasisVector right = system.right, unused = system.right;
-  const PriorPrecision precision(basis, channels);
-  precision.add_to(prior, matrix, right);
-  precision.add_to(prior, known, unused);
+  basis.prior.add_to(prior, matrix, right);
+  basis.prior.add_to(prior, known, unused);
   const NnlsSolution solution = solve_nnls(matrix, right);
   if (!solution.weights.allFinite()) return result;
-  for (std::size_t k = 0; k < basis.size(); ++k) {
+  for (std::size_t k = 0; k < result.weight.size(); ++k) {
     result.weight[k] = static_cast<float>(solution.weights[static_cast<Eigen::Index>(k)]);
   }
   result.relative_sigma = static_cast<float>(relative_sigma(system, solution, known));
   return result;
 }
 
-PriorChoice choose_prior(const Observations& observations, const std::vector<std::size_t>& members,
-                         const std::vector<Brdf>& basis, const Brdf& material,
-                         const ErrorModel& error) {
-  const Candidates candidates{candidate_priors(), PriorPrecision(basis, observations.channels)};
+PriorChoice choose_prior(const Observations& observations, const std::vector<std::size_t>& members, const TexelBasis& basis) {
+  const std::vector<TexelPrior> candidates = candidate_priors();
   std::vector<std::size_t> tried;
   for (const std::size_t i : members) {
     if (observations.of(i).size() >= 2) tried.push_back(i);  // with one sample nothing is left to predict from
   }
   const std::size_t stride = tried.size() / kMostTried + 1;
   std::vector<std::vector<LeftOut>> sums((tried.size() + stride - 1) / stride,
-                                         std::vector<LeftOut>(candidates.priors.size()));
+                                         std::vector<LeftOut>(candidates.size()));
   oneapi::tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t k) {
-    leave_one_out(observations.of(tried[k * stride]), observations.channels, basis, material, error, candidates, sums[k]);
+    leave_one_out(observations.of(tried[k * stride]), basis, candidates, sums[k]);
   });
   PriorChoice choice;
-  std::vector<LeftOut> total(candidates.priors.size());
+  std::vector<LeftOut> total(candidates.size());
   for (std::size_t k = 0; k < sums.size(); ++k) {
     for (std::size_t p = 0; p < total.size(); ++p) {
       total[p].tempered += sums[k][p].tempered;
@@ -153,7 +144,7 @@ PriorChoice choose_prior(const Observations& observations, const std::vector<std
     if (total[p].tempered < total[best].tempered && total[p].plain <= total[0].plain) best = p;
   }
   const double residuals = std::max<double>(1.0, static_cast<double>(choice.samples) * observations.channels);
-  choice.prior = candidates.priors[best];
+  choice.prior = candidates[best];
   choice.left_out_error = total[best].tempered / residuals;
   choice.left_out_error_without = total[0].tempered / residuals;
   return choice;

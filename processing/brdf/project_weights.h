@@ -11,17 +11,13 @@
 #include <span>
 #include <vector>
 
+#include "processing/brdf/basis_values.h"
 #include "processing/brdf/error_model.h"
-#include "processing/brdf/nnls.h"
 #include "processing/brdf/observations.h"
+#include "processing/brdf/texel_prior.h"
+#include "processing/brdf/texel_system.h"
 
 namespace lumitexel {
-
-// One-sigma of a texel's relative deviation from its material. Both infinite: the paper's plain least squares.
-// Either may be zero only with the other: then nothing varies.
-struct TexelPrior {
-  double diffuse_width = 0.4, gloss_width = 0.1;
-};
 
 struct TexelWeights {
   std::vector<float> weight;     // of each basis, >= 0
@@ -29,16 +25,21 @@ struct TexelWeights {
                                  // as often as they err independently; the error model's own where nothing may vary
 };
 
-inline bool nothing_varies(const TexelPrior& prior) { return prior.diffuse_width <= 0.0 && prior.gloss_width <= 0.0; }
+// What all texels of a material share. basis[0] is the material itself, or what principal function analysis made of it; samples are
+// weighted by the error model at the prediction of `material`, so that what is moved does not change the measure.
+struct TexelBasis {
+  TexelBasis(const std::vector<Brdf>& basis, const Brdf& material, const ErrorModel& error_model, Precision precision = Precision::Double)
+      : channels(material.channels), values(basis, material, precision), prior(basis, material.channels), error(error_model) {}
+  TexelBasis(const std::vector<Brdf>& basis, const ErrorModel& error_model) : TexelBasis(basis, basis[0], error_model) {}
 
-// Weights of one texel. basis[0] is the material itself, or what principal function analysis made of it; samples are weighted by the
-// error model at the prediction of `material`, so that what is moved does not change the measure.
-TexelWeights project_texel(std::span<const Observation> samples, int channels, const std::vector<Brdf>& basis, const Brdf& material,
-                           const ErrorModel& error, const TexelPrior& prior);
-inline TexelWeights project_texel(std::span<const Observation> samples, int channels, const std::vector<Brdf>& basis,
-                                  const ErrorModel& error, const TexelPrior& prior) {
-  return project_texel(samples, channels, basis, basis[0], error, prior);
-}
+  int channels;
+  BasisValues values;
+  PriorPrecision prior;
+  ErrorModel error;
+};
+
+// Weights of one texel.
+TexelWeights project_texel(std::span<const Observation> samples, const TexelBasis& basis, const TexelPrior& prior);
 
 struct PriorChoice {
   TexelPrior prior;
@@ -50,11 +51,6 @@ struct PriorChoice {
 // The pair of widths whose left-out samples are predicted best in the error model's sense, among those that do not
 // predict them worse than the material alone does in plain squares, which is what a rendering shows.
 // members: lumitexels of the material; at most some thousand of them are tried.
-PriorChoice choose_prior(const Observations& observations, const std::vector<std::size_t>& members, const std::vector<Brdf>& basis,
-                         const Brdf& material, const ErrorModel& error);
-inline PriorChoice choose_prior(const Observations& observations, const std::vector<std::size_t>& members,
-                                const std::vector<Brdf>& basis, const ErrorModel& error) {
-  return choose_prior(observations, members, basis, basis[0], error);
-}
+PriorChoice choose_prior(const Observations& observations, const std::vector<std::size_t>& members, const TexelBasis& basis);
 
 }  // namespace lumitexel

@@ -25,14 +25,14 @@ BasisMatrix gram(const std::vector<Brdf>& basis, int channels, const LobeGeometr
   return sum;
 }
 
-SampleEquations equations_of(const Observation& sample, int channels, const std::vector<Brdf>& basis, const Brdf& material,
-                             const ErrorModel& error) {
-  const ChannelValues expected = predicted_reflectance(material, sample.geometry);
-  SampleEquations equations{SamplePredictions(channels, basis.size()), {}, SampleValues(channels), {}};
+// values: of the bases, then of the material.
+SampleEquations equations_of(const Observation& sample, int channels, std::span<const ChannelValues> values, const ErrorModel& error) {
+  const std::size_t bases = values.size() - 1;
+  const ChannelValues& expected = values[bases];
+  SampleEquations equations{SamplePredictions(channels, bases), {}, SampleValues(channels), {}};
   SampleValues inverse_scale(channels);
-  for (std::size_t k = 0; k < basis.size(); ++k) {
-    const ChannelValues values = predicted_reflectance(basis[k], sample.geometry);
-    for (int c = 0; c < channels; ++c) equations.predicted(c, static_cast<Eigen::Index>(k)) = values[static_cast<std::size_t>(c)];
+  for (std::size_t k = 0; k < bases; ++k) {
+    for (int c = 0; c < channels; ++c) equations.predicted(c, static_cast<Eigen::Index>(k)) = values[k][static_cast<std::size_t>(c)];
   }
   for (int c = 0; c < channels; ++c) {
     const auto channel = static_cast<std::size_t>(c);
@@ -50,12 +50,15 @@ SampleEquations equations_of(const Observation& sample, int channels, const std:
 
 }  // namespace
 
-TexelSystem texel_system(std::span<const Observation> samples, int channels, const std::vector<Brdf>& basis, const Brdf& material,
-                         const ErrorModel& error) {
-  const auto n = static_cast<Eigen::Index>(basis.size());
+TexelSystem texel_system(std::span<const Observation> samples, int channels, const BasisValues& basis, const ErrorModel& error) {
+  const auto n = static_cast<Eigen::Index>(basis.bases());
   TexelSystem system{{}, BasisMatrix::Zero(n, n), BasisVector::Zero(n)};
-  for (const Observation& sample : samples) {
-    const SampleEquations equations = equations_of(sample, channels, basis, material, error);
+  system.samples.reserve(samples.size());
+  std::vector<ChannelValues> values;
+  basis.predict(samples, values);
+  const std::size_t stride = basis.bases() + 1;
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    const SampleEquations equations = equations_of(samples[s], channels, std::span(values).subspan(s * stride, stride), error);
     system.matrix += equations.whitened.transpose() * equations.whitened;
     system.right += equations.whitened.transpose() * equations.target;
     system.samples.push_back(equations);

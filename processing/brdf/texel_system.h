@@ -4,10 +4,11 @@
 #include <span>
 #include <vector>
 
+#include "processing/brdf/basis_values.h"
 #include "processing/brdf/brdf_slopes.h"
 #include "processing/brdf/error_model.h"
 #include "processing/brdf/nnls.h"
-#include "processing/brdf/project_weights.h"
+#include "processing/brdf/texel_prior.h"
 
 namespace lumitexel {
 
@@ -24,9 +25,8 @@ struct TexelSystem {
   BasisVector right;
 };
 
-// Weighted by the error model at the prediction of `material`. basis: at most kMaxBasis.
-TexelSystem texel_system(std::span<const Observation> samples, int channels, const std::vector<Brdf>& basis, const Brdf& material,
-                         const ErrorModel& error);
+// Weighted by the error model at the prediction of the material. At most kMaxBasis bases.
+TexelSystem texel_system(std::span<const Observation> samples, int channels, const BasisValues& basis, const ErrorModel& error);
 
 // Precision of the prior on the weights; its mean is (1, 0, 0, …), the material itself. Relative deviations are those of basis[0].
 class PriorPrecision {

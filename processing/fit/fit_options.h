@@ -45,6 +45,8 @@ struct FitOptions {
   std::size_t learning_lumitexels = 10000;  // that the materials are learnt on
   std::size_t final_lumitexels = 5000;      // of its own that each material is fitted to at the end
   LobeShapes lobe_shapes = LobeShapes::Shared;  // of a material's channels
+  int bases = 0;                            // at most so many BRDFs that a material's texels mix; 0: no more than predict left-out samples better
+  Precision precision = Precision::Double;  // of the bases' values at samples
   bool plain_projection = false;            // the paper's least squares for the weights, without a prior
   // What no model on the coarse mesh can predict: a share of each prediction, and a share of the session's median
   // reflectance under everything. Both found on held-out photographs of two sessions; see the README.

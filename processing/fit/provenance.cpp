@@ -97,6 +97,8 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
                        {"learning_lumitexels", options.learning_lumitexels},
                        {"final_lumitexels", options.final_lumitexels},
                        {"lobe_shapes", to_string(options.lobe_shapes)},
+                       {"bases", options.bases == 0 ? json("auto") : json(options.bases)},
+                       {"precision", to_string(options.precision)},
                        {"plain_projection", options.plain_projection},
                        {"errors", to_string(options.errors)},
                        {"relative_error", summary.error.relative},

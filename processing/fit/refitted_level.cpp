@@ -93,9 +93,10 @@ std::vector<TexelWeights> level_weights(const Model& model, const Observations& 
       if (label[i] == static_cast<int>(j)) members.push_back(i);
     }
     const ModelMaterial& material = model.materials[j];
-    const TexelPrior prior = choose_prior(observations, members, material.basis, material.brdf, error).prior;
+    const TexelBasis basis(material.basis, material.brdf, error);
+    const TexelPrior prior = choose_prior(observations, members, basis).prior;
     oneapi::tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t k) {
-      weights[members[k]] = project_texel(observations.of(members[k]), observations.channels, material.basis, material.brdf, error, prior);
+      weights[members[k]] = project_texel(observations.of(members[k]), basis, prior);
     });
   }
   return weights;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "drivers/error.h"
+#include "processing/brdf/choose_bases.h"
 #include "processing/brdf/material_basis.h"
 #include "processing/brdf/paper_clustering.h"
 #include "processing/brdf/principal_functions.h"
@@ -56,22 +57,31 @@ PriorChoice prior_for(const Observations& observations, const LumitexelList& mem
                       const MaterialModel& material, const FitOptions& options) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (options.plain_projection) return {{kInfinity, kInfinity}, 0.0, 0.0, 0};
-  return choose_prior(observations, members, basis, material.brdf, material.error);
+  return choose_prior(observations, members, TexelBasis(basis, material.brdf, material.error, options.precision));
 }
 
-std::vector<TexelWeights> project_all(const Observations& observations, const Clustering& clustering, const Model& model,
-                                      const FitOptions& options, FitSummary& summary, Progress& progress) {
+// Without a prior left-out samples are not asked, and all bases stay.
+PriorChoice choose_prior_and_bases(const Observations& observations, const LumitexelList& members, const MaterialModel& material,
+                                   const FitOptions& options, bool shrinks, std::vector<Brdf>& basis) {
+  if (!shrinks || options.plain_projection) return prior_for(observations, members, basis, material, options);
+  const BasesChoice choice = choose_bases(observations, members, basis, material.error, options.precision);
+  basis.resize(choice.bases);
+  return choice.prior;
+}
+
+std::vector<TexelWeights> project_all(const Observations& observations, const Clustering& clustering, const FitOptions& options,
+                                      bool shrinks, Model& model, FitSummary& summary, Progress& progress) {
   const std::vector<LumitexelList> members = members_of(clustering);
   std::vector<TexelWeights> weights(clustering.label.size());
   progress.begin("texel weights", static_cast<std::int64_t>(model.materials.size()), "materials");
   for (std::size_t j = 0; j < members.size(); ++j) {
-    const auto& basis = model.materials[j].basis;
     const MaterialModel& material = clustering.materials[j].model;
-    summary.prior.push_back(prior_for(observations, members[j], basis, material, options));
+    summary.prior.push_back(choose_prior_and_bases(observations, members[j], material, options, shrinks, model.materials[j].basis));
     const TexelPrior prior = summary.prior.back().prior;
+    const TexelBasis basis(model.materials[j].basis, material.brdf, material.error, options.precision);
     oneapi::tbb::parallel_for(std::size_t{0}, members[j].size(), [&](std::size_t k) {
       const std::size_t i = members[j][k];
-      weights[i] = project_texel(observations.of(i), observations.channels, basis, material.brdf, material.error, prior);
+      weights[i] = project_texel(observations.of(i), basis, prior);
     });
     summary.texels_by_material.push_back(static_cast<std::size_t>(std::count_if(
         members[j].begin(), members[j].end(), [&](std::size_t i) { return !observations.of(i).empty(); })));
@@ -84,7 +94,6 @@ std::vector<TexelWeights> project_all(const Observations& observations, const Cl
 // paper moves it always.
 void move_bases(const Observations& observations, const Clustering& clustering, const FitOptions& options, const FitSummary& summary,
                 Model& model, Progress& progress) {
-  constexpr double kLeastGain = 0.005;  // of the left-out error: less is not worth other functions
   const std::vector<LumitexelList> members = members_of(clustering);
   progress.begin("basis functions", static_cast<std::int64_t>(members.size()), "materials");
   for (std::size_t j = 0; j < members.size(); ++j) {
@@ -103,7 +112,7 @@ void move_bases(const Observations& observations, const Clustering& clustering, 
       for (std::size_t k = 0; k < members[j].size(); ++k) (k % 2 == 0 ? learnt : left_out).push_back(members[j][k]);
       const double before = prior_for(observations, left_out, basis, material, options).left_out_error;
       const double after = prior_for(observations, left_out, moved(learnt), material, options).left_out_error;
-      better = after < (1.0 - kLeastGain) * before;
+      better = after < (1.0 - kLeastBasisGain) * before;
     }
     if (better) basis = moved(members[j]);
     progress.update(static_cast<std::int64_t>(j + 1));
@@ -111,12 +120,15 @@ void move_bases(const Observations& observations, const Clustering& clustering, 
 }
 
 void set_materials(const Clustering& clustering, const Atlas& atlas, const LumitexelSet& lumitexels,
-                   const Observations& observations, Model& model) {
+                   const Observations& observations, std::size_t most_bases, Model& model) {
   std::vector<Brdf> brdfs;
   for (const FittedMaterial& material : clustering.materials) brdfs.push_back(material.model.brdf);
   const auto counts = neighbour_counts(atlas, lumitexels, clustering.label, brdfs.size());
   const auto bases = material_bases(brdfs, counts, observations);
-  for (std::size_t j = 0; j < brdfs.size(); ++j) model.materials.push_back({brdfs[j], bases[j], {}});
+  for (std::size_t j = 0; j < brdfs.size(); ++j) {
+    const auto end = bases[j].begin() + static_cast<std::ptrdiff_t>(std::min(bases[j].size(), most_bases));
+    model.materials.push_back({brdfs[j], {bases[j].begin(), end}, {}});
+  }
   model.single = clustering.single.brdf;
 }
 
@@ -159,9 +171,10 @@ Reflectance fit_reflectance(const FitInputs& inputs, const MaterialsBefore& befo
   summary.errors = result.clustering.errors;
   summary.family = result.clustering.fit.family;
   summary.lobe_shapes = result.clustering.fit.shared_shape ? LobeShapes::Shared : LobeShapes::Separate;
-  set_materials(result.clustering, atlas, lumitexels, observations, model);
+  const std::size_t most_bases = options.bases > 0 ? static_cast<std::size_t>(options.bases) : kMaxBasis;
+  set_materials(result.clustering, atlas, lumitexels, observations, most_bases, model);
   timer.begin("projection" + pass);
-  result.weights = project_all(observations, result.clustering, model, options, summary, progress);
+  result.weights = project_all(observations, result.clustering, options, options.bases == 0, model, summary, progress);
   return result;
 }
 
@@ -173,7 +186,7 @@ void seek_principal_functions(const FitInputs& inputs, Reflectance& reflectance,
   summary.prior.clear();
   summary.texels_by_material.clear();
   reflectance.projection = std::move(reflectance.weights);
-  reflectance.weights = project_all(inputs.observations, reflectance.clustering, model, inputs.options, summary, progress);
+  reflectance.weights = project_all(inputs.observations, reflectance.clustering, inputs.options, false, model, summary, progress);
 }
 
 }  // namespace lumitexel

@@ -22,6 +22,8 @@ Json options_json(const TradeoffSetting& setting) {
           {"interreflections", options.interreflections.wanted},
           {"most_lobes", options.most_lobes},
           {"principal_functions", options.principal_functions},
+          {"bases", options.bases == 0 ? Json("auto") : Json(options.bases)},
+          {"precision", to_string(options.precision)},
           {"materials", options.materials},
           {"learning_lumitexels", options.learning_lumitexels},
           {"final_lumitexels", options.final_lumitexels}};

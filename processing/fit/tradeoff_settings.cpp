@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "drivers/error.h"
+#include "processing/brdf/material_basis.h"
+#include "processing/brdf/nnls.h"
 
 namespace lumitexel {
 namespace {
@@ -31,6 +33,10 @@ std::vector<TradeoffSetting> all_settings(int materials) {
   add("ggx", "GGX lobes").options.family = BrdfFamily::Ggx;
   add("family-auto", "lobes of the family that predicts best").options.family.reset();
   add("lobe-shapes-auto", "a lobe shape for each channel where that predicts better").options.lobe_shapes = LobeShapes::Auto;
+  add("bases-1", "every texel its material itself, nothing mixed").options.bases = 1;
+  add("bases-3", "a texel mixes its material's own variations").options.bases = 1 + kVariations;
+  add("bases-8", "and other materials, asked for or not").options.bases = kMaxBasis;
+  add("float", "weights of texels from values in float").options.precision = Precision::Float;
   add("normals-mesh", "the mesh's normals, nothing fitted").options.normals = NormalChoice::Mesh;
   add("interreflections-off", "light between surfaces left in").options.interreflections.wanted = false;
   FitOptions& plain = add("plain", "neither normals nor light between surfaces").options;

@@ -14,7 +14,7 @@ namespace lumitexel {
 namespace {
 
 struct FitSettings {
-  std::string session, out, quality = "standard", materials = "4", method = "lumitexel", family = "lafortune", errors = "auto";
+  std::string session, out, quality = "standard", materials = "4", method = "lumitexel", family = "lafortune", errors = "auto", bases = "auto", precision = "double";
   int lobes = 1;
   double intensity_weight = 0.3;
   bool plain_projection = false, principal_functions = false;
@@ -44,6 +44,13 @@ Words<LayoutChoice> layout_words() {
   return words_by_to_string(std::vector{LayoutChoice::Auto, LayoutChoice::Photographs, LayoutChoice::Mesh});
 }
 
+// 0: auto.
+int bases_wanted(const std::string& word) {
+  Words<int> words{{"auto", 0}};
+  for (int k = 1; k <= kMaxBasis; ++k) words.emplace_back(std::to_string(k), k);
+  return named_value("--bases", word, words);
+}
+
 FitOptions fit_options(const FitSettings& settings) {
   FitOptions options = FitOptions::preset(named_value("--quality", settings.quality, quality_words()));
   options.materials = materials_wanted("--materials", settings.materials);
@@ -58,6 +65,8 @@ FitOptions fit_options(const FitSettings& settings) {
   options.intensity_weight = settings.intensity_weight;
   options.principal_functions = settings.principal_functions;
   if (!settings.lobe_shapes.empty()) options.lobe_shapes = named_value("--lobe-shapes", settings.lobe_shapes, shape_words());
+  options.bases = bases_wanted(settings.bases);
+  options.precision = named_value<Precision>("--precision", settings.precision, words_by_to_string(std::vector{Precision::Double, Precision::Float}));
   options.plain_projection = settings.plain_projection;
   const std::string normals = settings.normals.empty() ? (options.method == FitMethod::Paper ? "mesh" : "auto") : settings.normals;
   options.normals = named_value("--normals", normals, normal_words());
@@ -271,6 +280,12 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
   command->add_option("--lobe-shapes", settings->lobe_shapes,
                       "shared: one lobe shape for all colour channels of a material; separate: one a channel, as in the paper; auto: "
                       "separate where that predicts left-out samples better (default: shared, with --method paper separate)");
+  command->add_option("--bases", settings->bases,
+                      "Most BRDFs that a material's texels mix: 1 the material itself; 2 and 3 its variations; up to 8 other materials; "
+                      "auto: no more than predict left-out samples better")
+      ->capture_default_str();
+  command->add_option("--precision", settings->precision, "Of the values that texels' weights are computed from: double or float")
+      ->capture_default_str();
   command->add_flag("--plain-projection", settings->plain_projection,
                     "Project texels by least squares without a prior, as the paper does: closer to the photographs of the "
                     "fit, farther from others");

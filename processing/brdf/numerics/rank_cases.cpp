@@ -68,7 +68,7 @@ NumericCase collinear_bases() {
   const Observations observations = random_observations(truth, 20, 5, 0.0, 23);
   LargestError error;
   for (std::size_t i = 0; i < observations.lumitexels(); ++i) {
-    const TexelWeights weights = project_texel(observations.of(i), 3, basis, {}, {kInfinity, kInfinity});
+    const TexelWeights weights = project_texel(observations.of(i), TexelBasis(basis, {}), {kInfinity, kInfinity});
     for (const float weight : weights.weight) error.see(static_cast<double>(weight) - 0.25);
     error.see(std::isfinite(weights.relative_sigma) ? 0.0 : kInfinity);
   }

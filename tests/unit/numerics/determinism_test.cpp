@@ -100,10 +100,10 @@ TEST(Determinism, PriorAndProjection) {
   std::vector<std::size_t> members(220);
   for (std::size_t i = 0; i < members.size(); ++i) members[i] = i;
   expect_same_bytes([&] {
-    const PriorChoice choice = choose_prior(observations, members, basis, {});
+    const PriorChoice choice = choose_prior(observations, members, TexelBasis(basis, {}));
     std::vector<TexelWeights> weights(observations.lumitexels());
     oneapi::tbb::parallel_for(std::size_t{0}, weights.size(), [&](std::size_t i) {
-      weights[i] = project_texel(observations.of(i), 3, basis, {}, {0.4, 0.1});
+      weights[i] = project_texel(observations.of(i), TexelBasis(basis, {}), {0.4, 0.1});
     });
     Bytes bytes;
     bytes.add(choice.prior.diffuse_width);

@@ -1,0 +1,23 @@
+// How many of a material's bases its texels may mix: no more than predict left-out samples better.
+#pragma once
+
+#include <vector>
+
+#include "processing/brdf/project_weights.h"
+
+namespace lumitexel {
+
+// Of the left-out error: for less, neither more functions nor other ones are worth having.
+inline constexpr double kLeastBasisGain = 0.005;
+
+struct BasesChoice {
+  std::size_t bases = 0;
+  PriorChoice prior;  // with them
+};
+
+// Either the material with its variations (kVariations of material_basis.h), or all of `basis`, if left-out samples of the members are then
+// predicted better by kLeastBasisGain. The material alone is not asked: it is what a prior under which nothing varies makes of any basis.
+BasesChoice choose_bases(const Observations& observations, const std::vector<std::size_t>& members, const std::vector<Brdf>& basis,
+                         const ErrorModel& error, Precision precision);
+
+}  // namespace lumitexel
