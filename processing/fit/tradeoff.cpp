@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "drivers/error.h"
+#include "processing/fit/coarser_session.h"
 #include "processing/fit/fit_model.h"
 #include "processing/fit/thinned_session.h"
 
@@ -32,8 +33,15 @@ class SettingProgress final : public Progress {
   int stages_;
 };
 
-// Geometry, samples, materials, weights, comparison; bases and weights again.
-int stages_of(const FitOptions& options) { return options.principal_functions ? 7 : 5; }
+// Geometry, samples, materials, weights, comparison; bases and weights again; light between surfaces; normals and their trial, materials
+// and weights again.
+int stages_of(const FitOptions& options) {
+  int stages = options.principal_functions ? 7 : 5;
+  if (options.interreflections.wanted) stages += options.interreflections.rounds;
+  if (options.normals == NormalChoice::Auto) ++stages;
+  if (options.normals != NormalChoice::Mesh) stages += 3;
+  return stages;
+}
 
 double cpu_seconds() {
   timespec time{};
@@ -81,9 +89,10 @@ void fit_and_judge(const CalibratedSession& session, const CalibratedSession& he
   }
   measurement.fit_views = views;
   try {
+    const CoarserSession coarser(with_fit_views(session, views), setting.pixel_block);
     const bool own_memory = restart_peak_memory();
     const double cpu_before = cpu_seconds();
-    const FittedModel fitted = fit_model(with_fit_views(session, views), setting.options, {}, progress);
+    const FittedModel fitted = fit_model(coarser.session(), setting.options, {}, progress);
     measurement.cpu_seconds = cpu_seconds() - cpu_before;
     measurement.materials = fitted.model.materials.size();
     take_costs(fitted.summary.stages, own_memory, measurement);

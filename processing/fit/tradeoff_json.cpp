@@ -25,6 +25,7 @@ Json options_json(const TradeoffSetting& setting) {
           {"bases", options.bases == 0 ? Json("auto") : Json(options.bases)},
           {"precision", to_string(options.precision)},
           {"materials", options.materials},
+          {"pixel_block", setting.pixel_block},
           {"learning_lumitexels", options.learning_lumitexels},
           {"final_lumitexels", options.final_lumitexels}};
 }

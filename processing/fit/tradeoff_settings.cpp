@@ -48,6 +48,10 @@ std::vector<TradeoffSetting> all_settings(int materials) {
     const std::string number = std::to_string(views);
     add("views-" + number, "fitted to " + number + " photographs").fit_views = views;
   }
+  for (const int block : {2, 4}) {
+    const std::string number = std::to_string(block);
+    add("scale-1/" + number, "fitted to photographs of " + number + " times larger pixels").pixel_block = block;
+  }
   add(kReferenceSetting, "reference preset: learnt on all points", "reference");
   return settings;
 }

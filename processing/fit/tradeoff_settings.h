@@ -15,6 +15,7 @@ struct TradeoffSetting {
   std::string what;  // in words, against the standard preset
   FitOptions options;
   std::size_t fit_views = 0;  // 0: all
+  int pixel_block = 1;        // photographs to fit are binned by it, to so many times larger pixels
 };
 
 // The presets, and the standard preset with one thing changed at a time. `only`: these and no others, in the list's order;
