@@ -150,10 +150,18 @@ void describe_given(const CalibrationSummary& summary, std::ostream& text) {
 
 void describe_stray(const StrayLightSummary& light, std::ostream& text) {
   const Eigen::Vector3d& at = light.position_in_rig;
-  text << "  stray light at (" << at.x() << ", " << at.y() << ", " << at.z() << ") m in the rig's frame, sigma " << 1e3 * light.sigma_m
-       << " mm, on the spheres of";
+  text << "  stray light " << (light.placed ? "at (" : "far away towards (") << at.x() << ", " << at.y() << ", " << at.z()
+       << (light.placed ? ") m" : ")") << " in the rig's frame";
+  if (light.placed) text << ", sigma " << 1e3 * light.sigma_m << " mm";
+  text << ", on the spheres of";
   for (const std::string& view : light.views) text << ' ' << view;
-  text << ": it is in these photographs too, and on the gray card, so the scale is wrong; move or cover it\n";
+  text << ": it is in these photographs too, and on the gray card, ";
+  if (light.card_share) {
+    text << "with " << 100.0 * *light.card_share << " ± " << 100.0 * *light.card_share_sigma << " % of the lamp's light if nothing shades it";
+  } else {
+    text << "nobody knows how strongly";
+  }
+  text << "; nothing is corrected, the scale's sigma covers it; move or cover it\n";
 }
 
 void describe(const CalibratedSession& session, const CalibrationSummary& summary, std::ostream& text) {

@@ -34,6 +34,7 @@ TEST(CalibratedViewsFile, RoundTripsExactly) {
   CalibrationSummary summary;
   summary.lights.push_back({"fit_000", {1, 2, 3}, 0.1, true, 6, 1, 0.02, {4, 5, 6}, 0.2, true});
   summary.intensity = {1, 2, 3};
+  summary.stray_lights.push_back({{"fit_000"}, false, {0.6, 0.0, 0.8}, 0.0, 0.69, 0.02});
   summary.hot_pixels = 5;
   write_calibrated_views(folder.path(), written, summary);
   const auto read = read_calibrated_views(folder.path());
@@ -50,6 +51,11 @@ TEST(CalibratedViewsFile, RoundTripsExactly) {
   EXPECT_EQ(read->second.lights.at(0).spheres_alone_in_world, Eigen::Vector3d(4, 5, 6));
   EXPECT_TRUE(read->second.lights.at(0).off_the_arm);
   EXPECT_EQ(read->second.hot_pixels, 5);
+  const StrayLightSummary& stray = read->second.stray_lights.at(0);
+  EXPECT_FALSE(stray.placed);
+  EXPECT_EQ(stray.position_in_rig, Eigen::Vector3d(0.6, 0.0, 0.8));
+  EXPECT_EQ(stray.card_share, 0.69);
+  EXPECT_EQ(stray.card_share_sigma, 0.02);
 }
 
 TEST(CalibratedViewsFile, IsNotThereUntilEverythingIs) {

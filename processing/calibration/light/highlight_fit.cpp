@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "processing/image/linear_sensor.h"
@@ -253,6 +254,10 @@ Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& normal) {
 
 }  // namespace
 
+double flux_of(const FittedHighlight& fit) {
+  return fit.amplitude * std::numbers::pi * fit.width_px * fit.width_px * fit.exponent / (fit.exponent - 1.0);
+}
+
 std::optional<Eigen::Vector2d> across_centre(const SphereInView& view, const Eigen::Vector2d& centre_px,
                                              const Eigen::Vector3d& normal) {
   const auto rows = Domain(HighlightShape{.sphere = view}).rows(centre_px.x(), centre_px.y());
@@ -280,6 +285,7 @@ std::optional<FittedHighlight> fit_highlight(const MosaicRadiance& image, const 
   fit.pixel = p.head<2>();
   fit.sigma_px = std::sqrt(0.5 * (covariance(0, 0) + covariance(1, 1)));
   fit.width_px = 1.0 / std::sqrt(std::abs(p[2] * p[4]));
+  fit.exponent = exponent_of(p[kShape]);
   fit.amplitude = p[one_amplitude ? kFirstAmplitude : kFirstAmplitude + 1];
   if (!one_amplitude) {
     fit.balance = {p[kFirstAmplitude] / fit.amplitude, 1.0, p[kFirstAmplitude + 2] / fit.amplitude};

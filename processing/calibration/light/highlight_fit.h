@@ -35,7 +35,12 @@ struct FittedHighlight {
   double amplitude = 0;  // of green or mono, in the image's unit
   ColourBalance balance{1, 1, 1};
   double width_px = 0;  // 1 / sqrt(det L): a scale radius
+  double exponent = 2;  // b
 };
+
+// The peak's integral over t's plane, of green or mono, in the image's unit times px^2: on a sphere proportional to the light's
+// intensity over its squared distance, whatever widens the peak (roughness, the lens, the light's own size).
+double flux_of(const FittedHighlight& fit);
 
 struct SphereInView {
   CameraModel camera;
