@@ -81,6 +81,11 @@ struct LampSummary {
   int pattern_parameters = 0;                     // 0: equal in all directions, as far as is known
   std::optional<double> at_10_deg, at_10_deg_sigma;  // relative to its axis
   std::string card_source = "rig description";    // of the card's pose; else "tags"
+  double radius_m = 0;                            // of its disc; 0: a point, as far as is known
+  std::string radius_source = "rig description";  // else "highlights", which contradict it
+  // By the highlights, whatever the source: a radius with its sigma, or a 95 % bound of one too small to be told from a point; neither
+  // where they tell nothing.
+  std::optional<double> highlights_radius_m{}, highlights_radius_sigma_m{}, highlights_radius_bound_m{};
 };
 
 // Shares of a quantity's variance.

@@ -37,7 +37,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LensSummary, source, reprojection_px, params,
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PoseSummary, view, source, sigma_m, sigma_deg, silhouette_px, tags, dominant, given_px,
                                    contradiction, problem)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LampSummary, drifts, factor, factor_sigma, card_views, card_outliers,
-                                   pattern_parameters, at_10_deg, at_10_deg_sigma, card_source)
+                                   pattern_parameters, at_10_deg, at_10_deg_sigma, card_source, radius_m, radius_source,
+                                   highlights_radius_m, highlights_radius_sigma_m, highlights_radius_bound_m)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JointSummary, tried, taken, chi2_gain)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(UncertaintyShare, quantity, source, share)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CalibrationSummary, lights, stray_lights, spheres_seen, sphere_residual_px, sphere_sigma_scale, arm_scatter_m,

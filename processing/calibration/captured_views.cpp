@@ -90,12 +90,26 @@ class SessionCalibration {
     const LightSolution spheres = refine_jointly(seen, in_, options_, lens_, poses_, summary_);
     SessionLights lights = align_lights(spheres, records_, in_.plan, in_.rig, in_.rig.camera.camera_from_rig);
     summary_.spheres_seen = static_cast<int>(seen.rings.size());
+    note_lamp_size(seen);
     strays_.emplace(seen, lights, lens_.camera, in_.rig);
     summary_.sphere_residual_px = spheres.residual_px;
     summary_.sphere_sigma_scale = spheres.sigma_scale;
     summary_.arm_scatter_m = lights.arm.scatter_m();
     summary_.arm_residual_m = lights.arm.residual_m();
     return lights;
+  }
+
+  void note_lamp_size(const SphereHighlights& seen) {
+    LampSummary& lamp = summary_.lamp;
+    lamp.radius_m = seen.lamp.radius_m;
+    if (lamp.radius_m != in_.rig.light_positioner.lamp_radius_m) lamp.radius_source = "highlights";
+    if (!seen.size.measured) return;
+    if (seen.size.resolved) {
+      lamp.highlights_radius_m = seen.size.radius_m;
+      lamp.highlights_radius_sigma_m = seen.size.sigma_m;
+    } else {
+      lamp.highlights_radius_bound_m = seen.size.upper_m;
+    }
   }
 
   LitPlace place_of(const CardReading& reading) const { return {reading.card_in_rig, in_.rig.gray_card.normal_in_rig}; }

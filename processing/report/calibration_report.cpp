@@ -106,6 +106,14 @@ std::string scale_section(const CalibrationSummary& summary) {
        << (lamp.at_10_deg ? "10 degrees off its axis it gives " + html::number(*lamp.at_10_deg, 4) + " ± " +
                                 html::number(lamp.at_10_deg_sigma.value_or(0.0), 2) + " of its intensity."
                           : "no angular pattern was needed or measured.");
+  text << " Its radius is " << html::number(1e3 * lamp.radius_m) << " mm, from: " << lamp.radius_source << "; ";
+  if (lamp.highlights_radius_m) {
+    text << "by its highlights " << html::number(1e3 * *lamp.highlights_radius_m) << " ± " << html::number(1e3 * *lamp.highlights_radius_sigma_m, 2) << " mm.";
+  } else if (lamp.highlights_radius_bound_m) {
+    text << "its highlights are a point's, up to " << html::number(1e3 * *lamp.highlights_radius_bound_m, 2) << " mm at 95 %.";
+  } else {
+    text << "its highlights tell nothing.";
+  }
   return html::section("Scale and lamp", text.str(),
                        html::table({"", "intensity", "sigma"}, rows) + share_bars(summary));
 }

@@ -164,6 +164,17 @@ void describe_stray(const StrayLightSummary& light, std::ostream& text) {
   text << "; nothing is corrected, the scale's sigma covers it; move or cover it\n";
 }
 
+void describe_lamp_size(const LampSummary& lamp, std::ostream& text) {
+  text << "lamp's radius: " << 1e3 * lamp.radius_m << " mm (" << lamp.radius_source << ")";
+  if (lamp.highlights_radius_m) {
+    text << "; its highlights say " << 1e3 * *lamp.highlights_radius_m << " ± " << 1e3 * *lamp.highlights_radius_sigma_m << " mm\n";
+  } else if (lamp.highlights_radius_bound_m) {
+    text << "; its highlights are a point's, up to " << 1e3 * *lamp.highlights_radius_bound_m << " mm at 95 %\n";
+  } else {
+    text << "; its highlights tell nothing\n";
+  }
+}
+
 void describe(const CalibratedSession& session, const CalibrationSummary& summary, std::ostream& text) {
   text << session.views.size() << " views calibrated, " << session.channels << " channels\n";
   const LensSummary& lens = summary.lens;
@@ -189,6 +200,7 @@ void describe(const CalibratedSession& session, const CalibrationSummary& summar
        << summary.sphere_residual_px << " px rms on " << summary.spheres_seen << " spheres, arm within "
        << 1e3 * summary.arm_residual_m << " mm rms\n";
   for (const StrayLightSummary& light : summary.stray_lights) describe_stray(light, text);
+  describe_lamp_size(summary.lamp, text);
   text << "scale: gray card to " << 100.0 * summary.scale_sigma << " %, intensity";
   for (const double intensity : summary.intensity) text << ' ' << intensity;
   text << "\nlamp: " << (summary.lamp.drifts ? "drifts" : "steady, as far as can be told") << ", "
