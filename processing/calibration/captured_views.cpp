@@ -28,7 +28,7 @@ namespace lumitexel {
 namespace {
 
 // Part of the key: change it with anything that changes what a calibration gives.
-constexpr const char* kMethod = "captured calibration 6";
+constexpr const char* kMethod = "captured calibration 7";
 // Room for the mask about the mesh's picture: a coarse mesh's error, and that of a pose that nobody measured.
 constexpr int kRegisteredMargin_px = 4, kNominalMargin_px = 8;
 
@@ -231,6 +231,7 @@ class SessionCalibration {
       Light& light = calibrated_.views[v].light;
       light.intensity = lamp.intensity[v];
       light.pattern = lamp.pattern;
+      light.radius_m = summary_.lamp.radius_m;
       light.lamp_from_world = lamp.lamp_from_rig[v] * rig_from_world(v).linear();
     }
     calibrated_.gray_card_scale_sigma = lamp.scale_sigma;
