@@ -30,6 +30,7 @@ struct Light {
   // How a point light's intensity depends on direction; by default not at all.
   LampPattern pattern{};
   Eigen::Matrix3d lamp_from_world = Eigen::Matrix3d::Identity();  // turn of the lamp's frame (light/lamp_pattern.h)
+  double radius_m = 0;  // of a point light's disc, which faces along its lamp's z; 0: a point, as far as is known
 
   // Unit vector from the surface point towards the light.
   Eigen::Vector3d direction_from(const Eigen::Vector3d& x_in_world) const;

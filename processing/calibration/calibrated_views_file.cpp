@@ -10,7 +10,7 @@ namespace lumitexel {
 namespace {
 
 using nlohmann::json;
-constexpr int kVersion = 3;
+constexpr int kVersion = 4;
 
 json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 Eigen::Vector3d vector_from(const json& j) {
@@ -60,6 +60,7 @@ json view_json(const View& view) {
             {"vector", vector_json(view.light.vector_in_world)},
             {"intensity", view.light.intensity},
             {"sigma_m", view.light.sigma_m},
+            {"radius_m", view.light.radius_m},
             {"pattern", view.light.pattern.parameters()},
             {"pattern_covariance", view.light.pattern.covariance().reshaped()},
             {"lamp_from_world", view.light.lamp_from_world.reshaped()}}}};
@@ -77,6 +78,7 @@ View view_from(const json& j, const std::filesystem::path& directory) {
   view.light.vector_in_world = vector_from(light.at("vector"));
   view.light.intensity = light.at("intensity").get<std::vector<double>>();
   view.light.sigma_m = light.at("sigma_m").get<double>();
+  view.light.radius_m = light.at("radius_m").get<double>();
   const auto pattern = light.at("pattern").get<std::array<double, 4>>();
   const auto covariance = light.at("pattern_covariance").get<std::array<double, 16>>();
   view.light.pattern = LampPattern(Eigen::Map<const Eigen::Vector4d>(pattern.data()),

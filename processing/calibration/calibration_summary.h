@@ -25,8 +25,12 @@ struct LightSummary {
 // A light that is not the rig's own but shone with it (processing/calibration/light/stray_lights.h).
 struct StrayLightSummary {
   std::vector<std::string> views;                              // whose spheres show it
-  Eigen::Vector3d position_in_rig = Eigen::Vector3d::Zero();  // as the rig's file has the camera
-  double sigma_m = 0;                                          // per axis
+  bool placed = true;                                          // false: too far away for its distance to be known
+  Eigen::Vector3d position_in_rig = Eigen::Vector3d::Zero();  // as the rig's file has the camera; not placed: unit vector towards it
+  double sigma_m = 0;                                          // per axis; 0 if not placed
+  // Its irradiance at the gray card over the lamp's, in the channel with most of it, if nothing stands between: empty where it
+  // could not be told (then the scale's sigma counts it as much as the lamp).
+  std::optional<double> card_share{}, card_share_sigma{};
 };
 
 struct SensorSummary {
@@ -75,8 +79,13 @@ struct LampSummary {
   std::vector<double> factor{}, factor_sigma{};   // a view: output over that at the gray card's bracket
   int card_views = 0, card_outliers = 0;          // views in which the card could be measured, and did not fit
   int pattern_parameters = 0;                     // 0: equal in all directions, as far as is known
-  std::optional<double> at_10_deg;                // relative to its axis
+  std::optional<double> at_10_deg, at_10_deg_sigma;  // relative to its axis
   std::string card_source = "rig description";    // of the card's pose; else "tags"
+  double radius_m = 0;                            // of its disc; 0: a point, as far as is known
+  std::string radius_source = "rig description";  // else "highlights", which contradict it
+  // By the highlights, whatever the source: a radius with its sigma, or a 95 % bound of one too small to be told from a point; neither
+  // where they tell nothing.
+  std::optional<double> highlights_radius_m{}, highlights_radius_sigma_m{}, highlights_radius_bound_m{};
 };
 
 // Shares of a quantity's variance.

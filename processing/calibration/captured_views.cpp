@@ -4,12 +4,12 @@
 
 #include <atomic>
 #include <mutex>
+#include <optional>
 
 #include "drivers/error.h"
 #include "processing/calibration/calibrated_views_file.h"
 #include "processing/calibration/captured_inputs.h"
 #include "processing/calibration/light/sphere_shots.h"
-#include "processing/calibration/light/stray_lights.h"
 #include "processing/calibration/pose/joint_refinement.h"
 #include "processing/calibration/pose/object_mask.h"
 #include "processing/calibration/session_card.h"
@@ -19,6 +19,7 @@
 #include "processing/calibration/session_lights.h"
 #include "processing/calibration/session_poses.h"
 #include "processing/calibration/session_sensor.h"
+#include "processing/calibration/session_strays.h"
 #include "processing/calibration/session_tags.h"
 #include "processing/image/demosaic.h"
 #include "rig/sha256.h"
@@ -27,7 +28,7 @@ namespace lumitexel {
 namespace {
 
 // Part of the key: change it with anything that changes what a calibration gives.
-constexpr const char* kMethod = "captured calibration 5";
+constexpr const char* kMethod = "captured calibration 7";
 // Room for the mask about the mesh's picture: a coarse mesh's error, and that of a pose that nobody measured.
 constexpr int kRegisteredMargin_px = 4, kNominalMargin_px = 8;
 
@@ -57,10 +58,11 @@ class SessionCalibration {
     calibrated_.channels = mosaic_channels(in_.rig.camera.limits.mosaic);
     if (records_.empty()) return {std::move(calibrated_), std::move(summary_)};  // a session for the lens alone
     const SessionLights lights = measure_lights_of_views();
-    const LampPattern pattern = measure_lamp_pattern(frames_, in_, reader_, lens_, lights, options_, summary_);
+    const LampPattern pattern = measure_lamp_pattern(frames_, in_, reader_, lens_, lights, *strays_, options_, summary_);
     const SessionCard card(in_, lens_.camera, tags_, options_);
     summary_.lamp.card_source = card.posed() ? "tags" : "rig description";
     const TimedReading card_bracket = read_card_bracket(card, lights);
+    note_strays(card_bracket);
     make_views(lights);
     const std::vector<TimedReading> readings = make_photographs(card, lights);
     give_intensity(measure_lamp(in_, lights, pattern, readings, card_bracket, options_, summary_));
@@ -87,7 +89,9 @@ class SessionCalibration {
     const SphereHighlights seen = read_sphere_highlights(reader_, shots, lens_.camera, in_.rig, progress_);
     const LightSolution spheres = refine_jointly(seen, in_, options_, lens_, poses_, summary_);
     SessionLights lights = align_lights(spheres, records_, in_.plan, in_.rig, in_.rig.camera.camera_from_rig);
-    note_spheres(seen);
+    summary_.spheres_seen = static_cast<int>(seen.rings.size());
+    note_lamp_size(seen);
+    strays_.emplace(seen, lights, lens_.camera, in_.rig);
     summary_.sphere_residual_px = spheres.residual_px;
     summary_.sphere_sigma_scale = spheres.sigma_scale;
     summary_.arm_scatter_m = lights.arm.scatter_m();
@@ -95,15 +99,25 @@ class SessionCalibration {
     return lights;
   }
 
-  void note_spheres(const SphereHighlights& seen) {
-    summary_.spheres_seen = static_cast<int>(seen.rings.size());
-    const Eigen::Isometry3d rig_from_camera = in_.rig.camera.camera_from_rig.inverse();
-    for (const StrayLight& stray : locate_stray_lights(seen, lens_.camera, in_.rig)) {
-      StrayLightSummary& light = summary_.stray_lights.emplace_back();
-      for (const std::size_t v : stray.views) light.views.push_back(in_.plan.views[v].name);
-      light.position_in_rig = rig_from_camera * stray.position;
-      light.sigma_m = per_axis_sigma(stray.covariance);
+  void note_lamp_size(const SphereHighlights& seen) {
+    LampSummary& lamp = summary_.lamp;
+    lamp.radius_m = seen.lamp.radius_m;
+    if (lamp.radius_m != in_.rig.light_positioner.lamp_radius_m) lamp.radius_source = "highlights";
+    if (!seen.size.measured) return;
+    if (seen.size.resolved) {
+      lamp.highlights_radius_m = seen.size.radius_m;
+      lamp.highlights_radius_sigma_m = seen.size.sigma_m;
+    } else {
+      lamp.highlights_radius_bound_m = seen.size.upper_m;
     }
+  }
+
+  LitPlace place_of(const CardReading& reading) const { return {reading.card_in_rig, in_.rig.gray_card.normal_in_rig}; }
+
+  void note_strays(const TimedReading& card) {
+    std::vector<std::string> names;
+    for (const PlannedView& view : in_.plan.views) names.push_back(view.name);
+    summary_.stray_lights = strays_->summarise(names, place_of(*card.reading), card.light_in_rig);
   }
 
   TimedReading read_card_bracket(const SessionCard& card, const SessionLights& lights) const {
@@ -115,6 +129,7 @@ class SessionCalibration {
       throw BadInput("gray card", "not usable in its own bracket: out of sight, turned away, dark or saturated",
                      "a card in the camera's sight that faces camera and light, and exposures that suit it");
     }
+    timed.stray_shares = strays_->shares(place_of(*timed.reading), light.position_in_rig);
     return timed;
   }
 
@@ -179,6 +194,8 @@ class SessionCalibration {
       note_darks(merged);
       readings[v] = {seconds_between(records_[0].bracket[0], middle_of(records_[v].bracket)),
                      lights.in_rig[v].position_in_rig, card.read(merged, lights.in_rig[v])};
+      TimedReading& timed = readings[v];
+      if (timed.reading) timed.stray_shares = strays_->shares(place_of(*timed.reading), timed.light_in_rig, v);
       if (!write_photograph(merged, records_[v], calibrated_.views[v])) ++without_silhouette;
       progress_.update(++done);
     });
@@ -214,6 +231,7 @@ class SessionCalibration {
       Light& light = calibrated_.views[v].light;
       light.intensity = lamp.intensity[v];
       light.pattern = lamp.pattern;
+      light.radius_m = summary_.lamp.radius_m;
       light.lamp_from_world = lamp.lamp_from_rig[v] * rig_from_world(v).linear();
     }
     calibrated_.gray_card_scale_sigma = lamp.scale_sigma;
@@ -230,6 +248,7 @@ class SessionCalibration {
   SessionLens lens_;
   std::vector<std::vector<DetectedTag>> tags_;
   SessionPoses poses_;
+  std::optional<SessionStrays> strays_;
   CalibratedSession calibrated_;
   std::mutex noting_;
 };

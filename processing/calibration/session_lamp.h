@@ -8,6 +8,7 @@
 #include "processing/calibration/session_card.h"
 #include "processing/calibration/session_lens.h"
 #include "processing/calibration/session_lights.h"
+#include "processing/calibration/session_strays.h"
 
 namespace lumitexel {
 
@@ -16,6 +17,7 @@ struct TimedReading {
   double time_s = 0;  // since the session's first frame
   Eigen::Vector3d light_in_rig = Eigen::Vector3d::Zero();
   std::optional<CardReading> reading;
+  std::vector<double> stray_shares{};  // of the card's light, per channel (SessionStrays); empty: none
 };
 
 struct SessionLamp {
@@ -26,13 +28,15 @@ struct SessionLamp {
 };
 
 // The pattern from the board under the point light, if the session has such shots and the board's pose is known.
-// Directions count from the arm's pivot as `lights` has aligned it.
+// Directions count from the arm's pivot as `lights` has aligned it. Strays on the board stay in it; what the pattern would be
+// without them is that far off its covariance's mean: the covariance holds the difference.
 LampPattern measure_lamp_pattern(const CapturedFrames& frames, const CapturedInputs& in, const RadianceReader& reader,
-                                 const SessionLens& lens, const SessionLights& lights,
+                                 const SessionLens& lens, const SessionLights& lights, const SessionStrays& strays,
                                  const CalibrationOptions& options, CalibrationSummary& summary);
 
 // views: one entry a view, possibly without a reading; card: the gray card's own bracket, with one. Fills in summary.lamp,
-// intensity, gray_card_pixel_scatter, scale_sigma and the scale's shares.
+// intensity, gray_card_pixel_scatter, scale_sigma and the scale's shares. Strays stay in the readings; what intensity and factors
+// would be without them is that far off is in their sigmas.
 SessionLamp measure_lamp(const CapturedInputs& in, const SessionLights& lights, const LampPattern& pattern,
                          const std::vector<TimedReading>& views, const TimedReading& card,
                          const CalibrationOptions& options, CalibrationSummary& summary);

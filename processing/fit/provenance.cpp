@@ -12,7 +12,7 @@ json rejected_json(const RejectionCounts& rejected) {
   return {{"outside_frame", rejected.outside_frame}, {"hidden", rejected.hidden},
           {"in_shadow", rejected.in_shadow},         {"near_depth_edge", rejected.near_depth_edge},
           {"near_shadow_edge", rejected.near_shadow_edge}, {"grazing", rejected.grazing},
-          {"photograph_flag", rejected.photograph_flag}};
+          {"photograph_flag", rejected.photograph_flag}, {"in_penumbra", rejected.in_penumbra}};
 }
 
 json stages_json(const std::vector<StageCost>& stages) {

@@ -103,10 +103,31 @@ std::string scale_section(const CalibrationSummary& summary) {
   text << "The point light's intensity by the gray card, whose pose comes from: " << lamp.card_source << ". The card was read in "
        << lamp.card_views << " views (" << lamp.card_outliers << " of the readings do not fit). The lamp "
        << (lamp.drifts ? "drifts" : "is steady as far as can be told") << "; "
-       << (lamp.at_10_deg ? "10 degrees off its axis it gives " + html::number(*lamp.at_10_deg, 4) + " of its intensity."
+       << (lamp.at_10_deg ? "10 degrees off its axis it gives " + html::number(*lamp.at_10_deg, 4) + " ± " +
+                                html::number(lamp.at_10_deg_sigma.value_or(0.0), 2) + " of its intensity."
                           : "no angular pattern was needed or measured.");
+  text << " Its radius is " << html::number(1e3 * lamp.radius_m) << " mm, from: " << lamp.radius_source << "; ";
+  if (lamp.highlights_radius_m) {
+    text << "by its highlights " << html::number(1e3 * *lamp.highlights_radius_m) << " ± " << html::number(1e3 * *lamp.highlights_radius_sigma_m, 2) << " mm.";
+  } else if (lamp.highlights_radius_bound_m) {
+    text << "its highlights are a point's, up to " << html::number(1e3 * *lamp.highlights_radius_bound_m, 2) << " mm at 95 %.";
+  } else {
+    text << "its highlights tell nothing.";
+  }
   return html::section("Scale and lamp", text.str(),
                        html::table({"", "intensity", "sigma"}, rows) + share_bars(summary));
+}
+
+std::string stray_note(const StrayLightSummary& light) {
+  const Eigen::Vector3d& at = light.position_in_rig;
+  std::string note = std::string("Stray light ") + (light.placed ? "at (" : "far away towards (") + html::number(at.x()) + ", " +
+                     html::number(at.y()) + ", " + html::number(at.z()) + (light.placed ? ") m" : ")") + " in the rig's frame";
+  if (light.placed) note += ", sigma " + html::number(1e3 * light.sigma_m) + " mm";
+  note += ", on the spheres of " + std::to_string(light.views.size()) + " views: it is in their photographs too, and on the gray card, ";
+  note += light.card_share ? "with " + html::number(100.0 * *light.card_share) + " ± " + html::number(100.0 * *light.card_share_sigma, 2) +
+                                 " % of the lamp's light if nothing shades it."
+                           : std::string("nobody knows how strongly.");
+  return note + " Nothing is corrected; the scale's sigma covers it. Move or cover it.";
 }
 
 }  // namespace
@@ -124,12 +145,7 @@ std::string calibrated_views_section(const CalibrationSummary& summary) {
                     lamp ? html::number(summary.lamp.factor_sigma[v], 2) : "–"});
   }
   std::vector<std::string> strays;
-  for (const StrayLightSummary& light : summary.stray_lights) {
-    const Eigen::Vector3d& at = light.position_in_rig;
-    strays.push_back("Stray light at (" + html::number(at.x()) + ", " + html::number(at.y()) + ", " + html::number(at.z()) +
-                     ") m in the rig's frame, sigma " + html::number(1e3 * light.sigma_m) + " mm, on the spheres of " +
-                     std::to_string(light.views.size()) + " views: it is in their photographs too, and on the gray card, so the scale is wrong. Move or cover it.");
-  }
+  for (const StrayLightSummary& light : summary.stray_lights) strays.push_back(stray_note(light));
   const std::string problem =
       summary.pose_problem.empty() ? "" : " Poses are the rig description's: " + summary.pose_problem;
   return html::section(

@@ -109,7 +109,11 @@ Verdict sample(const ViewContext& context, const SurfacePoint& point, float* ref
   if (context.scene.occluded(point.position, to_eye / distance, context.scene.surface_offset_m(), distance)) {
     return Verdict::Hidden;
   }
-  if (!is_lit(context.view.light, point, context.scene)) return Verdict::InShadow;
+  switch (lighting_of(context.view.light, point, context.scene)) {
+    case Lighting::Dark: return Verdict::InShadow;
+    case Lighting::Partly: return Verdict::Penumbra;
+    case Lighting::Full: break;
+  }
 
   std::uint8_t edges = 0;
   const bool usable = read_footprint(context, footprint_at(pixel, context.view.camera), reflectance, variance, edges);
@@ -149,6 +153,7 @@ void count(const ViewSamples& samples, RejectionCounts& counts) {
       case Verdict::ShadowEdge: ++counts.near_shadow_edge; break;
       case Verdict::Grazing: ++counts.grazing; break;
       case Verdict::Flagged: ++counts.photograph_flag; break;
+      case Verdict::Penumbra: ++counts.in_penumbra; break;
     }
   }
 }

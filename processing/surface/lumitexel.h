@@ -35,12 +35,12 @@ struct LumitexelSet {
 };
 
 // What became of a view's look at a lumitexel: a sample, or the first reason against one.
-enum class SampleVerdict : std::uint8_t { Used, OutsideFrame, Hidden, InShadow, DepthEdge, ShadowEdge, Grazing, Flagged };
+enum class SampleVerdict : std::uint8_t { Used, OutsideFrame, Hidden, InShadow, DepthEdge, ShadowEdge, Grazing, Flagged, Penumbra };
 
 // What was left out, by reason, over all views and lumitexels.
 struct RejectionCounts {
   std::int64_t outside_frame = 0, hidden = 0, in_shadow = 0, near_depth_edge = 0, near_shadow_edge = 0, grazing = 0,
-               photograph_flag = 0;
+               photograph_flag = 0, in_penumbra = 0;
 };
 
 }  // namespace lumitexel

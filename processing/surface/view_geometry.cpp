@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace lumitexel {
 namespace {
@@ -14,7 +15,7 @@ constexpr double kDiscontinuitySlope = 6.0;
 
 struct PixelProbe {
   std::vector<float> distance_m;   // infinity where nothing is hit
-  std::vector<std::uint8_t> lit;
+  std::vector<Lighting> lighting;
 };
 
 void probe_row(const View& view, const Mesh& mesh, const RayScene& scene, int y, ViewGeometry& geometry,
@@ -30,7 +31,7 @@ void probe_row(const View& view, const Mesh& mesh, const RayScene& scene, int y,
     geometry.u[i] = static_cast<float>(hit->u);
     geometry.v[i] = static_cast<float>(hit->v);
     probe.distance_m[i] = static_cast<float>(hit->distance_m);
-    probe.lit[i] = is_lit(view.light, surface_point(mesh, hit->triangle, hit->u, hit->v), scene) ? 1 : 0;
+    probe.lighting[i] = lighting_of(view.light, surface_point(mesh, hit->triangle, hit->u, hit->v), scene);
   }
 }
 
@@ -45,7 +46,7 @@ void mark_edges(const View& view, const PixelProbe& probe, ViewGeometry& geometr
     if (miss_a != miss_b || std::abs(da - db) > kDiscontinuitySlope * footprint * std::min(da, db)) {
       flag |= kViewDepthEdge;
     }
-    if (!miss_a && !miss_b && probe.lit[a] != probe.lit[b]) flag |= kViewShadowEdge;
+    if (!miss_a && !miss_b && probe.lighting[a] != probe.lighting[b]) flag |= kViewShadowEdge;
     geometry.flags[a] |= flag;
     geometry.flags[b] |= flag;
   };
@@ -92,6 +93,19 @@ bool is_lit(const Light& light, const SurfacePoint& point, const RayScene& scene
   return !scene.occluded(point.position, direction, scene.surface_offset_m(), reach);
 }
 
+Lighting lighting_of(const Light& light, const SurfacePoint& point, const RayScene& scene) {
+  const bool centre = is_lit(light, point, scene);
+  if (light.type != Light::Type::Point || !(light.radius_m > 0.0)) return centre ? Lighting::Full : Lighting::Dark;
+  const Eigen::Vector3d across = light.lamp_from_world.row(0), other = light.lamp_from_world.row(1);
+  for (int i = 0; i < kRimPlaces; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kRimPlaces;
+    Light place;
+    place.vector_in_world = light.vector_in_world + light.radius_m * (std::cos(angle) * across + std::sin(angle) * other);
+    if (is_lit(place, point, scene) != centre) return Lighting::Partly;
+  }
+  return centre ? Lighting::Full : Lighting::Dark;
+}
+
 ViewGeometry trace_view(const View& view, const Mesh& mesh, const RayScene& scene) {
   ViewGeometry geometry;
   geometry.width = view.camera.width_px;
@@ -102,7 +116,7 @@ ViewGeometry trace_view(const View& view, const Mesh& mesh, const RayScene& scen
   geometry.v.assign(count, 0.0f);
   geometry.flags.assign(count, 0);
   PixelProbe probe{std::vector<float>(count, std::numeric_limits<float>::infinity()),
-                   std::vector<std::uint8_t>(count, 0)};
+                   std::vector<Lighting>(count, Lighting::Dark)};
   oneapi::tbb::parallel_for(0, geometry.height,
                             [&](int y) { probe_row(view, mesh, scene, y, geometry, probe); });
   mark_edges(view, probe, geometry);

@@ -13,7 +13,7 @@ namespace lumitexel {
 enum ViewPixelFlag : std::uint8_t {
   kViewMiss = 1,        // no surface
   kViewDepthEdge = 2,   // within kEdgeMarginPx of a depth discontinuity or the silhouette
-  kViewShadowEdge = 4,  // within kEdgeMarginPx of the border between light and shadow
+  kViewShadowEdge = 4,  // within kEdgeMarginPx of the border between light and shadow; of a lamp of some size, of its penumbra's borders
 };
 
 // Photographs blur over a pixel or two and the coarse mesh is off by as much, so samples closer than this to an
@@ -32,7 +32,7 @@ struct ViewGeometry {
   }
 };
 
-// Casts a ray through every pixel centre and a shadow ray from every hit. Parallel over rows.
+// Casts a ray through every pixel centre and shadow rays from every hit (lighting_of). Parallel over rows.
 ViewGeometry trace_view(const View& view, const Mesh& mesh, const RayScene& scene);
 
 // Point and unit normal (interpolated between the vertices) at barycentric (u, v) of a triangle.
@@ -41,7 +41,13 @@ struct SurfacePoint {
 };
 SurfacePoint surface_point(const Mesh& mesh, std::uint32_t triangle, double u, double v);
 
-// Whether the light reaches the point: in front of the surface and nothing in between.
+// Whether the light's centre reaches the point: in front of the surface and nothing in between.
 bool is_lit(const Light& light, const SurfacePoint& point, const RayScene& scene);
+
+// How much of the light's disc reaches the point, by its centre and kRimPlaces places on its rim. A light without a radius, and one
+// far away, is Dark or Full as is_lit says, and costs no more.
+enum class Lighting : std::uint8_t { Dark, Partly, Full };
+inline constexpr int kRimPlaces = 8;
+Lighting lighting_of(const Light& light, const SurfacePoint& point, const RayScene& scene);
 
 }  // namespace lumitexel

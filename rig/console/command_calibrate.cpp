@@ -150,10 +150,29 @@ void describe_given(const CalibrationSummary& summary, std::ostream& text) {
 
 void describe_stray(const StrayLightSummary& light, std::ostream& text) {
   const Eigen::Vector3d& at = light.position_in_rig;
-  text << "  stray light at (" << at.x() << ", " << at.y() << ", " << at.z() << ") m in the rig's frame, sigma " << 1e3 * light.sigma_m
-       << " mm, on the spheres of";
+  text << "  stray light " << (light.placed ? "at (" : "far away towards (") << at.x() << ", " << at.y() << ", " << at.z()
+       << (light.placed ? ") m" : ")") << " in the rig's frame";
+  if (light.placed) text << ", sigma " << 1e3 * light.sigma_m << " mm";
+  text << ", on the spheres of";
   for (const std::string& view : light.views) text << ' ' << view;
-  text << ": it is in these photographs too, and on the gray card, so the scale is wrong; move or cover it\n";
+  text << ": it is in these photographs too, and on the gray card, ";
+  if (light.card_share) {
+    text << "with " << 100.0 * *light.card_share << " ± " << 100.0 * *light.card_share_sigma << " % of the lamp's light if nothing shades it";
+  } else {
+    text << "nobody knows how strongly";
+  }
+  text << "; nothing is corrected, the scale's sigma covers it; move or cover it\n";
+}
+
+void describe_lamp_size(const LampSummary& lamp, std::ostream& text) {
+  text << "lamp's radius: " << 1e3 * lamp.radius_m << " mm (" << lamp.radius_source << ")";
+  if (lamp.highlights_radius_m) {
+    text << "; its highlights say " << 1e3 * *lamp.highlights_radius_m << " ± " << 1e3 * *lamp.highlights_radius_sigma_m << " mm\n";
+  } else if (lamp.highlights_radius_bound_m) {
+    text << "; its highlights are a point's, up to " << 1e3 * *lamp.highlights_radius_bound_m << " mm at 95 %\n";
+  } else {
+    text << "; its highlights tell nothing\n";
+  }
 }
 
 void describe(const CalibratedSession& session, const CalibrationSummary& summary, std::ostream& text) {
@@ -181,6 +200,7 @@ void describe(const CalibratedSession& session, const CalibrationSummary& summar
        << summary.sphere_residual_px << " px rms on " << summary.spheres_seen << " spheres, arm within "
        << 1e3 * summary.arm_residual_m << " mm rms\n";
   for (const StrayLightSummary& light : summary.stray_lights) describe_stray(light, text);
+  describe_lamp_size(summary.lamp, text);
   text << "scale: gray card to " << 100.0 * summary.scale_sigma << " %, intensity";
   for (const double intensity : summary.intensity) text << ' ' << intensity;
   text << "\nlamp: " << (summary.lamp.drifts ? "drifts" : "steady, as far as can be told") << ", "

@@ -65,8 +65,8 @@ TEST(LumitexelRecords, AreTheSamplesThatTheFitSaw) {
   const json provenance = sphere().provenance(), rejected = provenance.at("rejected");
   EXPECT_EQ(records.used_views, (std::vector<std::size_t>{0, 1, 2, 3}));
   EXPECT_EQ(records.texel.size(), provenance.at("lumitexels").get<std::size_t>());
-  const char* const kNames[] = {"outside_frame", "hidden", "in_shadow", "near_depth_edge", "near_shadow_edge", "grazing", "photograph_flag"};
-  for (int verdict = 1; verdict <= 7; ++verdict) {
+  const char* const kNames[] = {"outside_frame", "hidden", "in_shadow", "near_depth_edge", "near_shadow_edge", "grazing", "photograph_flag", "in_penumbra"};
+  for (int verdict = 1; verdict <= 8; ++verdict) {
     EXPECT_EQ(count_of(records, verdict), rejected.at(kNames[verdict - 1]).get<std::size_t>()) << kNames[verdict - 1];
   }
   EXPECT_GT(count_of(records, 0), 5000u);

@@ -1,11 +1,13 @@
 #include "processing/calibration/light/highlight_fit.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "processing/image/linear_sensor.h"
@@ -31,7 +33,17 @@ constexpr Eigen::Index kShape = 5, kBackground = 6, kFirstAmplitude = 7;
 // The exponent, kept between heavier tails than any mirror's and what no pixel can tell from a Gaussian.
 double exponent_of(double shape) { return 1.0 + 15.0 / (1.0 + std::exp(-shape)); }
 constexpr double kStartShape = -2.64;  // exponent 2, a GGX surface's
-constexpr double kShapeSigma = 2.0;    // a weak prior: where the pixels cannot tell, the start stays
+
+// What is known of the shape beforehand.
+struct ShapePrior {
+  double start = kStartShape;
+  double sigma = 2.0;  // weak: where the pixels cannot tell, the start stays
+};
+ShapePrior shape_prior(const std::optional<double>& exponent) {
+  if (!exponent) return {};
+  constexpr double kHeld = 1e-4;
+  return {-std::log(15.0 / (*exponent - 1.0) - 1.0), kHeld};
+}
 
 // Where the peak lives: t(p) = (across_x . u(p), across_y . u(p)), u fixed for a place in the picture, the two rows
 // following the centre. In the picture's plane u = (x, y, 1); on a sphere u is the normal.
@@ -81,8 +93,9 @@ class Domain {
 
 class PeakModel {
  public:
-  PeakModel(const std::vector<Sample>& samples, const std::optional<ColourBalance>& balance, const Domain& domain)
-      : balance_(balance), domain_(domain) {
+  PeakModel(const std::vector<Sample>& samples, const std::optional<ColourBalance>& balance, const Domain& domain,
+            const ShapePrior& prior)
+      : balance_(balance), domain_(domain), prior_(prior) {
     for (const Sample& sample : samples) add(sample);
   }
   std::size_t size() const { return samples_.size(); }
@@ -126,7 +139,7 @@ class PeakModel {
 
   Eigen::VectorXd residuals(const Parameters& p, const Eigen::VectorXd& profile) const {
     Eigen::VectorXd r(profile.size() + 1);
-    r[profile.size()] = (p[kShape] - kStartShape) / kShapeSigma;
+    r[profile.size()] = (p[kShape] - prior_.start) / prior_.sigma;
     for (Eigen::Index i = 0; i < profile.size(); ++i) {
       const Sample& s = samples_[static_cast<std::size_t>(i)];
       r[i] = (gain(s) * (p[kBackground] + p[amplitude_index(s)] * profile[i]) - s.value) / s.sigma;
@@ -172,6 +185,7 @@ class PeakModel {
 
   std::optional<ColourBalance> balance_;
   Domain domain_;
+  ShapePrior prior_;
   std::vector<Sample> samples_;
   std::vector<Domain::Place> places_;  // kPlaces for each sample
 };
@@ -203,7 +217,7 @@ std::vector<Sample> usable_samples(const MosaicRadiance& image, const Eigen::Vec
   return samples;
 }
 
-Parameters start_values(const std::vector<Sample>& samples, const Eigen::Vector2d& start, bool one_amplitude) {
+Parameters start_values(const std::vector<Sample>& samples, const Eigen::Vector2d& start, double start_shape, bool one_amplitude) {
   std::vector<double> values;
   for (const Sample& s : samples) values.push_back(s.value);
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -211,7 +225,7 @@ Parameters start_values(const std::vector<Sample>& samples, const Eigen::Vector2
   const double background = *middle, peak = *std::max_element(values.begin(), values.end());
   Parameters p = Parameters::Zero(kFirstAmplitude + (one_amplitude ? 1 : 3));
   constexpr double kStartWidthPx = 1.5;
-  p << start, 1.0 / kStartWidthPx, 0.0, 1.0 / kStartWidthPx, kStartShape, background,
+  p << start, 1.0 / kStartWidthPx, 0.0, 1.0 / kStartWidthPx, start_shape, background,
       Eigen::VectorXd::Constant(p.size() - kFirstAmplitude, 1.5 * (peak - background));
   return p;
 }
@@ -253,6 +267,10 @@ Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& normal) {
 
 }  // namespace
 
+double flux_of(const FittedHighlight& fit) {
+  return fit.amplitude * std::numbers::pi * fit.width_px * fit.width_px * fit.exponent / (fit.exponent - 1.0);
+}
+
 std::optional<Eigen::Vector2d> across_centre(const SphereInView& view, const Eigen::Vector2d& centre_px,
                                              const Eigen::Vector3d& normal) {
   const auto rows = Domain(HighlightShape{.sphere = view}).rows(centre_px.x(), centre_px.y());
@@ -264,10 +282,11 @@ std::optional<FittedHighlight> fit_highlight(const MosaicRadiance& image, const 
   const bool one_amplitude = balance.has_value() || image.mosaic == Mosaic::Mono;
   const std::optional<ColourBalance> used = image.mosaic == Mosaic::Mono ? ColourBalance{1, 1, 1} : balance;
   const std::vector<Sample> samples = usable_samples(image, start, reach_px, shape.others_px);
-  const PeakModel model(samples, used, Domain(shape));
+  const ShapePrior prior = shape_prior(shape.exponent);
+  const PeakModel model(samples, used, Domain(shape), prior);
   constexpr std::size_t kLeastSamples = 20;  // about twice the unknowns
   if (model.size() < kLeastSamples) return std::nullopt;
-  Parameters p = start_values(samples, start, one_amplitude);
+  Parameters p = start_values(samples, start, prior.start, one_amplitude);
   const auto freedom = static_cast<double>(model.size()) - static_cast<double>(p.size());
   if (!minimise(model, p)) return std::nullopt;
   const Eigen::MatrixXd j = model.jacobian(p);
@@ -280,6 +299,10 @@ std::optional<FittedHighlight> fit_highlight(const MosaicRadiance& image, const 
   fit.pixel = p.head<2>();
   fit.sigma_px = std::sqrt(0.5 * (covariance(0, 0) + covariance(1, 1)));
   fit.width_px = 1.0 / std::sqrt(std::abs(p[2] * p[4]));
+  fit.exponent = exponent_of(p[kShape]);
+  Eigen::Matrix2d l;
+  l << p[2], 0.0, p[3], p[4];
+  fit.spread_px2 = (l.transpose() * l).inverse();
   fit.amplitude = p[one_amplitude ? kFirstAmplitude : kFirstAmplitude + 1];
   if (!one_amplitude) {
     fit.balance = {p[kFirstAmplitude] / fit.amplitude, 1.0, p[kFirstAmplitude + 2] / fit.amplitude};

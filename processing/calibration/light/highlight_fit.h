@@ -35,7 +35,13 @@ struct FittedHighlight {
   double amplitude = 0;  // of green or mono, in the image's unit
   ColourBalance balance{1, 1, 1};
   double width_px = 0;  // 1 / sqrt(det L): a scale radius
+  double exponent = 2;  // b
+  Eigen::Matrix2d spread_px2 = Eigen::Matrix2d::Zero();  // inverse of L^T L, in t's plane: u^T spread u is the width along u, squared
 };
+
+// The peak's integral over t's plane, of green or mono, in the image's unit times px^2: on a sphere proportional to the light's
+// intensity over its squared distance, whatever widens the peak (roughness, the lens, the light's own size).
+double flux_of(const FittedHighlight& fit);
 
 struct SphereInView {
   CameraModel camera;
@@ -47,6 +53,7 @@ struct HighlightShape {
   std::vector<Eigen::Vector2d>
       offsets_px{};  // of equal peaks about the centre, in t's plane; none: one peak
   std::vector<Eigen::Vector2d> others_px{};  // other highlights; pixels nearer to one of them than to the start are left out
+  std::optional<double> exponent{};          // b where it is known, between 1 and 16; none: fitted
 };
 
 // t of a normal on the sphere when the highlight's centre is at the pixel: what offsets_px wants there. None if the pixel is

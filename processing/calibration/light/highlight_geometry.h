@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct HighlightPixel {
   int sphere = 0;  // index along the line
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
   double sigma_px = 0.05;  // per axis
+  // Light in it, per colour of the mosaic (mono: three times the same): flux_of(fit) by the fit's balance. 0: not known.
+  std::array<double, 3> flux{};
 };
 
 // The point nearest to all rays in the least squares sense. None if the rays are fewer than two or parallel.

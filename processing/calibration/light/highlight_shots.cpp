@@ -59,7 +59,8 @@ void refit_highlights(const RadianceReader& reader, const RecordOf& record, cons
 }
 
 HighlightPixel highlight_pixel_of(int sphere, const FittedHighlight& fit) {
-  return {sphere, fit.pixel, std::hypot(kSystematicPx, fit.sigma_px)};
+  const double flux = flux_of(fit);
+  return {sphere, fit.pixel, std::hypot(kSystematicPx, fit.sigma_px), {flux * fit.balance[0], flux * fit.balance[1], flux * fit.balance[2]}};
 }
 
 }  // namespace lumitexel

@@ -39,7 +39,7 @@ void refit_highlights(const RadianceReader& reader, const RecordOf& record, cons
 
 inline constexpr int kHighlightReach_px = 8;  // of a fit's window about the blob
 
-// A fit's place and what is to be believed of it.
+// A fit's place, what is to be believed of it, and its light.
 HighlightPixel highlight_pixel_of(int sphere, const FittedHighlight& fit);
 
 }  // namespace lumitexel

@@ -54,20 +54,6 @@ SeenInView near_expected(const CameraModel& camera, const SphereLine& line, cons
   return result;
 }
 
-// A lamp of some size is seen as so many equal peaks about its reflection's centroid; the description is good enough for where
-// they lie about it.
-HighlightShape lamp_shape(const SphereInView& view, const Eigen::Vector3d& light, const EmitterDisc& lamp) {
-  HighlightShape shape{.sphere = view};
-  if (!(lamp.radius_m > 0.0)) return shape;
-  const Eigen::Vector2d centre = disc_highlight_pixel(view.camera, view.sphere, light, lamp);
-  for (const Eigen::Vector3d& place : places_on_disc(light, lamp)) {
-    const Eigen::Vector3d point = mirror_point(view.sphere, Eigen::Vector3d::Zero(), place);
-    const auto offset = across_centre(view, centre, (point - view.sphere.centre).normalized());
-    if (offset) shape.offsets_px.push_back(*offset);
-  }
-  return shape;
-}
-
 bool has_close_rival(const SeenHighlight& one, const SeenInView& seen) {
   return std::any_of(seen.begin(), seen.end(), [&](const SeenHighlight& other) {
     const double distance = (one.blob.pixel - other.blob.pixel).norm();
@@ -84,6 +70,18 @@ SeenInView without_close_rivals(const SeenInView& seen) {
 }
 
 }  // namespace
+
+HighlightShape lamp_shape(const SphereInView& view, const Eigen::Vector3d& light, const EmitterDisc& lamp) {
+  HighlightShape shape{.sphere = view};
+  if (!(lamp.radius_m > 0.0)) return shape;
+  const Eigen::Vector2d centre = disc_highlight_pixel(view.camera, view.sphere, light, lamp);
+  for (const Eigen::Vector3d& place : places_on_disc(light, lamp)) {
+    const Eigen::Vector3d point = mirror_point(view.sphere, Eigen::Vector3d::Zero(), place);
+    const auto offset = across_centre(view, centre, (point - view.sphere.centre).normalized());
+    if (offset) shape.offsets_px.push_back(*offset);
+  }
+  return shape;
+}
 
 SortedHighlights sort_highlights(const CameraModel& camera, const SphereLine& line, const SeenInView& all,
                                  const Eigen::Vector3d& expected, double reach_m) {
@@ -136,6 +134,7 @@ PointHighlights read_point_highlights(const RadianceReader& reader, const Record
   }
   refit_highlights(reader, record, on_sphere, own);
   for (const SeenInView& view : own) result.own.push_back(fitted(view));
+  result.seen = std::move(own);
   return result;
 }
 

@@ -16,6 +16,7 @@ namespace lumitexel {
 
 struct PointHighlights {
   std::vector<std::vector<HighlightPixel>> own;                   // by view
+  std::vector<SeenInView> seen;                                   // the same as they were found and fitted, those without a fit too
   std::vector<std::vector<std::vector<HighlightPixel>>> strays;  // by view, then a light each; the own one is not among them
 };
 
@@ -25,6 +26,10 @@ struct ExpectedLights {
   double reach_m = 0;                      // how far off they may be
   EmitterDisc lamp;
 };
+
+// The highlight on a sphere of a lamp at `light`: of one of some size, so many equal peaks about its reflection's centroid. `light` may be
+// off by a part of its distance: where they lie about the centroid hardly changes.
+HighlightShape lamp_shape(const SphereInView& view, const Eigen::Vector3d& light, const EmitterDisc& lamp);
 
 struct SortedHighlights {
   SeenInView own;

@@ -1,8 +1,9 @@
 #include "processing/calibration/light/sphere_shots.h"
 
 #include <atomic>
+#include <cmath>
+#include <functional>
 
-#include "processing/calibration/light/point_highlights.h"
 #include "processing/calibration/light/ring_row.h"
 
 namespace lumitexel {
@@ -14,13 +15,30 @@ EmitterDisc lamp_of(const RigDescription& rig) {
 
 // An arm set up with care is off its description by centimetres; what stands farther away is some other light.
 constexpr double kReachOfRadius = 0.25;
+constexpr double kMostOfRadius = 0.2;  // a lamp's: as the rig's file may have it
+
+double lamp_radius_by(const LampSize& size, double in_file_m) {
+  if (!size.measured) return in_file_m;
+  constexpr double kConfirmedSigmas = 2.0;
+  const bool confirmed = in_file_m > 0.0 && std::abs(in_file_m - size.radius_m) <= kConfirmedSigmas * size.sigma_m;
+  if (size.resolved) return confirmed ? in_file_m : size.radius_m;
+  return in_file_m <= size.upper_m ? in_file_m : 0.0;
+}
+
+LampHighlights lamp_highlights(const PointHighlights& points, const LightSolution& solution, const RigDescription& rig) {
+  LampHighlights lamp{points.seen, {}, lamp_of(rig).faces, kMostOfRadius * rig.light_positioner.radius_m};
+  for (const MeasuredLight& light : solution.lights) {
+    lamp.lights.push_back(light.measured ? std::optional(light.position) : std::nullopt);
+  }
+  return lamp;
+}
 
 }  // namespace
 
 SphereHighlights read_sphere_highlights(const RadianceReader& reader, const std::vector<SphereShots>& views,
                                         const CameraModel& camera, const RigDescription& rig, Progress& progress) {
   std::atomic<std::int64_t> done{0};
-  const auto step = [&] { progress.update(++done); };
+  std::function<void()> step = [&] { progress.update(++done); };
   progress.begin("sphere shots", static_cast<std::int64_t>(2 * views.size()), "shots");
   const RecordOf ring = [&](std::size_t v) -> const FrameRecord& { return views[v].ring; };
   const RecordOf point = [&](std::size_t v) -> const FrameRecord& { return views[v].point; };
@@ -31,13 +49,28 @@ SphereHighlights read_sphere_highlights(const RadianceReader& reader, const std:
                        arm.nominal_position_in_rig(view.point.light_azimuth_deg, view.point.light_elevation_deg));
   }
   const RingRow row = read_ring_row(views.size(), reader, ring, camera, rig, step);
-  PointHighlights points = read_point_highlights(reader, point, camera, row.line, expected, step);
-  return {row.rings, std::move(points.own), std::move(points.strays), row.line};
+  const PictureOf ring_picture = [&](std::size_t v) { return reader.read(ring(v)); };
+  const PointWidths widths = measure_point_widths(views.size(), ring_picture, camera, row.line, row.rings, rig.ring_flash.radius_m);
+  SphereHighlights seen;
+  // Of a large lamp taken for a point some highlights cannot be fitted: with its radius known, once more.
+  constexpr int kMostRounds = 3;
+  for (int round = 0; round < kMostRounds; ++round) {
+    PointHighlights points = read_point_highlights(reader, point, camera, row.line, expected, step);
+    step = [] {};  // the progress has counted every shot once
+    const LightSolution solution = solve_lights(camera, row.line, rig.ring_flash.radius_m, row.rings, points.own, expected.lamp);
+    const LampSize size = measure_lamp_size(widths, [&](std::size_t v) { return reader.read(point(v)); }, camera, row.line,
+                                            lamp_highlights(points, solution, rig));
+    seen = {row.rings, std::move(points.own), std::move(points.strays), row.line, expected.lamp, size};
+    const double radius_m = lamp_radius_by(size, arm.lamp_radius_m);
+    if (std::abs(radius_m - expected.lamp.radius_m) <= size.sigma_m) break;
+    expected.lamp.radius_m = radius_m;
+  }
+  return seen;
 }
 
 LightSolution measure_lights(const SphereHighlights& seen, const CameraModel& camera, const RigDescription& rig,
                              const std::optional<LensMatrix>& lens_covariance) {
-  return solve_lights(camera, seen.line, rig.ring_flash.radius_m, seen.rings, seen.points, lamp_of(rig), lens_covariance);
+  return solve_lights(camera, seen.line, rig.ring_flash.radius_m, seen.rings, seen.points, seen.lamp, lens_covariance);
 }
 
 }  // namespace lumitexel

@@ -2,23 +2,42 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <optional>
 
 namespace lumitexel {
 namespace {
 
 // All views share the sphere line's error, and so lie nearer to one another than these covariances say: a light that moved by
 // less than a few centimetres at a metre may pass for one that stood.
-bool stands_there(const StrayLight& light, const MeasuredLight& seen) {
+bool stands_there(const StrayLight& light, const StrayLight& seen) {
   constexpr double kChiSquare3At999 = 16.27;
+  constexpr double kSameDirection = 0.03;  // rad; directions of far lights are good to a tenth of that
+  if (light.placed != seen.placed) return false;
   const Eigen::Vector3d between = seen.position - light.position;
+  if (!light.placed) return between.norm() < kSameDirection;
   return between.dot((light.covariance + seen.covariance).inverse() * between) < kChiSquare3At999;
 }
 
-void merge(StrayLight& light, const MeasuredLight& seen, std::size_t view) {
-  const Eigen::Matrix3d had = light.covariance.inverse(), more = seen.covariance.inverse();
-  light.covariance = (had + more).inverse();
-  light.position = light.covariance * (had * light.position + more * seen.position);
-  light.views.push_back(view);
+void merge(StrayLight& light, const StrayLight& seen) {
+  if (light.placed) {
+    const Eigen::Matrix3d had = light.covariance.inverse(), more = seen.covariance.inverse();
+    light.covariance = (had + more).inverse();
+    light.position = light.covariance * (had * light.position + more * seen.position);
+  } else {
+    light.position = (static_cast<double>(light.views.size()) * light.position + seen.position).normalized();
+  }
+  light.views.insert(light.views.end(), seen.views.begin(), seen.views.end());
+  light.highlights.insert(light.highlights.end(), seen.highlights.begin(), seen.highlights.end());
+}
+
+std::optional<Eigen::Vector3d> mean_direction(const std::vector<HighlightPixel>& highlights, const CameraModel& camera,
+                                              const SphereLine& line) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const HighlightPixel& seen : highlights) {
+    const auto ray = mirrored_ray(line.sphere(seen.sphere), {Eigen::Vector3d::Zero(), camera.unproject(seen.pixel)});
+    if (ray) sum += ray->direction;
+  }
+  return sum.norm() > 0.0 ? std::optional<Eigen::Vector3d>(sum.normalized()) : std::nullopt;
 }
 
 }  // namespace
@@ -37,15 +56,21 @@ std::vector<StrayLight> locate_stray_lights(const SphereHighlights& seen, const 
   if (all.empty()) return lights;
   const LightSolution solution = solve_lights(camera, seen.line, rig.ring_flash.radius_m, seen.rings, all);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const MeasuredLight& light = solution.lights[i];
-    if (!light.measured) continue;
+    const MeasuredLight& measured = solution.lights[i];
+    StrayLight light{{view_of[i]}, measured.position, measured.covariance, measured.measured, all[i]};
+    if (!light.placed) {
+      const auto direction = mean_direction(all[i], camera, solution.line);
+      if (!direction) continue;
+      light.position = *direction;
+      light.covariance.setZero();
+    }
     const auto known = std::find_if(lights.begin(), lights.end(), [&](const StrayLight& other) {
       return other.views.back() != view_of[i] && stands_there(other, light);
     });
     if (known == lights.end()) {
-      lights.push_back({{view_of[i]}, light.position, light.covariance});
+      lights.push_back(std::move(light));
     } else {
-      merge(*known, light, view_of[i]);
+      merge(*known, light);
     }
   }
   return lights;

@@ -1,5 +1,5 @@
-// Where the lights stand that are not the rig's own but shine on the spheres with it: a second lamp, or the lamp's image in
-// something that mirrors. What they add to the photographs calibration cannot take out; somebody has to move or cover them.
+// Which lights that are not the rig's own shine on the spheres with it: a second lamp, or the lamp's image in something that
+// mirrors. What they add to the photographs calibration cannot take out; somebody has to move or cover them.
 #pragma once
 
 #include <cstddef>
@@ -11,12 +11,14 @@ namespace lumitexel {
 
 struct StrayLight {
   std::vector<std::size_t> views;                       // in which the spheres show it
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // camera's frame, m
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // camera's frame, m; not placed: the unit vector towards it
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // not placed: zero
+  bool placed = true;                       // false: too far away for the spheres to tell its distance (MeasuredLight)
+  std::vector<HighlightPixel> highlights;   // of all its views
 };
 
-// From the strays among the spheres' highlights, each view solved on its own; those that stand in one place in several views
-// are one. In the order of the first view that shows them. A light too far away to be placed is left out.
+// From the strays among the spheres' highlights, each view solved on its own; those that stand in one place (or direction) in
+// several views are one. In the order of the first view that shows them.
 std::vector<StrayLight> locate_stray_lights(const SphereHighlights& seen, const CameraModel& camera,
                                             const RigDescription& rig);
 

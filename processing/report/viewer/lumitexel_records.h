@@ -13,7 +13,7 @@ namespace lumitexel {
 
 // A SampleVerdict as number, or this: a sample that was gathered, but whose light or view is not above the fitted normal, or whose
 // numbers are not finite, so that no fit met it (reject_samples.h).
-inline constexpr std::uint8_t kBelowFittedNormal = 8;
+inline constexpr std::uint8_t kBelowFittedNormal = 9;
 
 // Of one view, one entry a lumitexel whose verdict is SampleVerdict::Used, in the lumitexels' order.
 struct ViewRecords {

@@ -20,8 +20,9 @@ constexpr const char* kVerdicts[] = {"used",
                                      "at the edge of a shadow",
                                      "grazing",
                                      "flagged in the photograph: clipped, defective or masked out",
+                                     "in the penumbra of a lamp of some size",
                                      "below the fitted normal"};
-static_assert(std::size(kVerdicts) == std::size_t{kBelowFittedNormal} + 1 && static_cast<int>(SampleVerdict::Flagged) == 7);
+static_assert(std::size(kVerdicts) == std::size_t{kBelowFittedNormal} + 1 && static_cast<int>(SampleVerdict::Penumbra) == 8);
 
 json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 

@@ -3,46 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/light/light_bound.h"
+#include "tests/unit/light/light_bench.h"
 
 namespace lumitexel {
 namespace {
-
-constexpr double kSigma_px = 0.005;
-
-struct Bench {
-  RigDescription rig;
-  CapturePlan plan;
-  std::vector<ViewFrames> views;
-  SphereRig spheres;
-};
-
-// Camera at the rig's origin, or beside it by `offset`; an arm about a point a metre before it, four of whose lights the spheres see.
-Bench bench_at(const Eigen::Vector3d& offset) {
-  Bench bench;
-  bench.spheres = simulated_sphere_rig();
-  bench.spheres.lights.clear();
-  bench.rig.camera.camera_from_rig = Eigen::Isometry3d(Eigen::Translation3d(-offset));
-  bench.rig.light_positioner.pivot_in_rig = offset + Eigen::Vector3d(0.0, 0.0, 1.0);
-  bench.rig.light_positioner.radius_m = 1.0;
-  const double places[][2] = {{-60.0, -30.0}, {-100.0, -10.0}, {-30.0, -50.0}, {-140.0, -20.0}};
-  for (const auto& [azimuth_deg, elevation_deg] : places) {
-    PlannedView& planned = bench.plan.views.emplace_back();
-    planned.name = "view" + std::to_string(bench.views.size());
-    FrameRecord& shot = bench.views.emplace_back().spheres.point;
-    shot.light_azimuth_deg = azimuth_deg;
-    shot.light_elevation_deg = elevation_deg;
-    bench.spheres.lights.push_back(bench.rig.camera.camera_from_rig *
-                                   bench.rig.light_positioner.nominal_position_in_rig(azimuth_deg, elevation_deg) +
-                                   Eigen::Vector3d(0.004, -0.003, 0.002));
-  }
-  return bench;
-}
-
-SessionLights lights_of(const Bench& bench, std::uint64_t seed) {
-  const LightSolution solution = solved_lights(bench.spheres, noisy_highlights(bench.spheres, kSigma_px, seed));
-  return align_lights(solution, bench.views, bench.plan, bench.rig, bench.rig.camera.camera_from_rig);
-}
 
 // A kilometre costs ten bits of a double: 1e-13 m in a coordinate, which the arm's differences over 1e-5 m magnify to 1e-8 of
 // their slope. A micrometre, a thousandth of what the lights are good to, is generous.
@@ -63,7 +27,7 @@ TEST(SessionLights, AreAsGoodAKilometreFromTheRigsOrigin) {
 TEST(SessionLights, StateTheirErrors) {
   double sum = 0.0;
   constexpr int kSeeds = 100;
-  const Bench bench = bench_at(Eigen::Vector3d::Zero());
+  const LightBench bench = bench_at(Eigen::Vector3d::Zero());
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
     const SessionLights lights = lights_of(bench, seed);
     for (std::size_t v = 0; v < bench.views.size(); ++v) {

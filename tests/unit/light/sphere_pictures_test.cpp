@@ -94,6 +94,25 @@ TEST(SpherePictures, ALampOfKnownSizeIsMeasuredAsOne) {
   EXPECT_LT(found.lights.spheres.residual_px, 0.015);
 }
 
+// Whose size nobody stated: told from its highlights, then used.
+TEST(SpherePictures, ALampOfUnknownSizeTellsIt) {
+  const PicturedLights found = photograph_spheres("simulation.lamp_radius_m = 0.05\n");
+  ASSERT_TRUE(found.seen.size.resolved);
+  EXPECT_LT(std::abs(found.seen.size.radius_m - 0.05), 3.0 * found.seen.size.sigma_m);
+  EXPECT_LT(found.seen.size.sigma_m, 0.002);
+  EXPECT_NEAR(found.seen.lamp.radius_m, found.seen.size.radius_m, found.seen.size.sigma_m);
+  expect_within_sigma(found);
+}
+
+// The rig's file says 8 cm and is wrong: the highlights do not believe it.
+TEST(SpherePictures, APointThatTheRigsFileCallsALampIsAPoint) {
+  const PicturedLights found = photograph_spheres("light_positioner.lamp_radius_m = 0.08\n");
+  EXPECT_TRUE(found.seen.size.measured);
+  EXPECT_FALSE(found.seen.size.resolved);
+  EXPECT_EQ(found.seen.lamp.radius_m, 0.0);
+  expect_within_sigma(found);
+}
+
 const std::string kSecondLamp = "simulation.second_lamp_w_per_sr = [8.0, 9.0, 10.0]\nsimulation.second_lamp_in_rig_m = ";
 
 TEST(SpherePictures, ASecondLampIsToldApartAndNamed) {
