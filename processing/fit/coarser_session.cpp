@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "drivers/error.h"
+#include "processing/calibration/lens/larger_pixels.h"
 #include "processing/image/binned_radiance.h"
 
 namespace lumitexel {
@@ -19,13 +20,6 @@ std::shared_ptr<const std::filesystem::path> temporary_folder() {
 }
 
 }  // namespace
-
-CameraModel with_larger_pixels(CameraModel camera, int block) {
-  camera.width_px /= block;
-  camera.height_px /= block;
-  for (double* length : {&camera.focal_x_px, &camera.focal_y_px, &camera.principal_x_px, &camera.principal_y_px}) *length /= block;
-  return camera;
-}
 
 CoarserSession::CoarserSession(const CalibratedSession& session, int block) : session_(session) {
   if (block == 1) return;

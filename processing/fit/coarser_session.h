@@ -21,7 +21,4 @@ class CoarserSession {
   std::shared_ptr<const std::filesystem::path> folder_;  // removed with the last owner
 };
 
-// The camera that sees the same through pixels `block` times as large.
-CameraModel with_larger_pixels(CameraModel camera, int block);
-
 }  // namespace lumitexel

@@ -30,11 +30,11 @@ void fit_highlights(const MosaicRadiance& image, std::size_t view, const std::op
   }
 }
 
-std::vector<SeenInView> find_highlights(std::size_t views, const RadianceReader& reader, const RecordOf& record,
+std::vector<SeenInView> find_highlights(std::size_t views, const PictureOf& picture,
                                         const FindIn& find, const ShapeOf& shape, const std::function<void()>& step) {
   std::vector<SeenInView> seen(views);
   tbb::parallel_for(std::size_t{0}, views, [&](std::size_t v) {
-    const MosaicRadiance image = reader.read(record(v));
+    const MosaicRadiance image = picture(v);
     seen[v] = find(v, image);
     note_others(seen[v]);
     fit_highlights(image, v, std::nullopt, shape, seen[v]);
@@ -43,7 +43,7 @@ std::vector<SeenInView> find_highlights(std::size_t views, const RadianceReader&
   return seen;
 }
 
-void refit_highlights(const RadianceReader& reader, const RecordOf& record, const ShapeOf& shape,
+void refit_highlights(const PictureOf& picture, const ShapeOf& shape,
                       std::vector<SeenInView>& seen) {
   std::vector<FittedHighlight> fits;
   for (const SeenInView& view : seen) {
@@ -54,7 +54,7 @@ void refit_highlights(const RadianceReader& reader, const RecordOf& record, cons
   const std::optional<ColourBalance> balance = colour_balance(fits);
   if (!balance) return;
   tbb::parallel_for(std::size_t{0}, seen.size(), [&](std::size_t v) {
-    if (!seen[v].empty()) fit_highlights(reader.read(record(v)), v, balance, shape, seen[v]);
+    if (!seen[v].empty()) fit_highlights(picture(v), v, balance, shape, seen[v]);
   });
 }
 

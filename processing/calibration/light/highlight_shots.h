@@ -8,7 +8,7 @@
 #include "processing/calibration/light/highlight_fit.h"
 #include "processing/calibration/light/highlight_geometry.h"
 #include "processing/calibration/light/sphere_highlights.h"
-#include "processing/calibration/radiance_reader.h"
+#include "processing/image/hdr_merge.h"
 
 namespace lumitexel {
 
@@ -20,7 +20,7 @@ struct SeenHighlight {
 };
 using SeenInView = std::vector<SeenHighlight>;
 
-using RecordOf = std::function<const FrameRecord&(std::size_t view)>;
+using PictureOf = std::function<MosaicRadiance(std::size_t view)>;  // called from several threads
 using FindIn = std::function<SeenInView(std::size_t view, const MosaicRadiance&)>;
 // Called from several threads.
 using ShapeOf = std::function<HighlightShape(std::size_t view, const SeenHighlight&)>;
@@ -30,11 +30,11 @@ void fit_highlights(const MosaicRadiance& image, std::size_t view, const std::op
                     const ShapeOf& shape, SeenInView& seen);
 
 // Finds highlights in every view's shot, notes each one's others, and fits them with free colours. step: called once a shot.
-std::vector<SeenInView> find_highlights(std::size_t views, const RadianceReader& reader, const RecordOf& record,
+std::vector<SeenInView> find_highlights(std::size_t views, const PictureOf& picture,
                                         const FindIn& find, const ShapeOf& shape, const std::function<void()>& step);
 
 // Fits them again, with the lamp's balance of colours that all of them have in common.
-void refit_highlights(const RadianceReader& reader, const RecordOf& record, const ShapeOf& shape,
+void refit_highlights(const PictureOf& picture, const ShapeOf& shape,
                       std::vector<SeenInView>& seen);
 
 inline constexpr int kHighlightReach_px = 8;  // of a fit's window about the blob

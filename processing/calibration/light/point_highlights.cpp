@@ -109,7 +109,7 @@ SortedHighlights sort_highlights(const CameraModel& camera, const SphereLine& li
   return sorted;
 }
 
-PointHighlights read_point_highlights(const RadianceReader& reader, const RecordOf& record, const CameraModel& camera,
+PointHighlights read_point_highlights(const PictureOf& picture, const CameraModel& camera,
                                       const SphereLine& line, const ExpectedLights& expected,
                                       const std::function<void()>& step) {
   const ShapeOf on_sphere = [&](std::size_t view, const SeenHighlight& highlight) {
@@ -123,7 +123,7 @@ PointHighlights read_point_highlights(const RadianceReader& reader, const Record
     }
     return seen;
   };
-  const std::vector<SeenInView> all = find_highlights(expected.positions.size(), reader, record, find, on_sphere, step);
+  const std::vector<SeenInView> all = find_highlights(expected.positions.size(), picture, find, on_sphere, step);
   std::vector<SeenInView> own;
   PointHighlights result;
   for (std::size_t v = 0; v < all.size(); ++v) {
@@ -132,7 +132,7 @@ PointHighlights read_point_highlights(const RadianceReader& reader, const Record
     std::vector<std::vector<HighlightPixel>>& strays = result.strays.emplace_back();
     for (const SeenInView& stray : sorted.strays) strays.push_back(fitted(stray));
   }
-  refit_highlights(reader, record, on_sphere, own);
+  refit_highlights(picture, on_sphere, own);
   for (const SeenInView& view : own) result.own.push_back(fitted(view));
   result.seen = std::move(own);
   return result;

@@ -41,7 +41,7 @@ SortedHighlights sort_highlights(const CameraModel& camera, const SphereLine& li
                                  const Eigen::Vector3d& expected, double reach_m);
 
 // step: called once a shot.
-PointHighlights read_point_highlights(const RadianceReader& reader, const RecordOf& record, const CameraModel& camera,
+PointHighlights read_point_highlights(const PictureOf& picture, const CameraModel& camera,
                                       const SphereLine& line, const ExpectedLights& expected,
                                       const std::function<void()>& step);
 

@@ -9,8 +9,6 @@
 
 namespace lumitexel {
 
-using PictureOf = std::function<MosaicRadiance(std::size_t view)>;
-
 // What the spheres make of a point.
 struct PointWidths {
   double exponent = 2;

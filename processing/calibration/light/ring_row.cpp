@@ -147,7 +147,7 @@ std::optional<VerifiedRow> best_of_view(const std::vector<PartialRow>& rows, std
 }
 
 // The best row of some of the spheres, in every view where its members are seen.
-std::vector<SeenInView> partial_rows(const RadianceReader& reader, const RecordOf& record, const std::vector<Blobs>& blobs,
+std::vector<SeenInView> partial_rows(const PictureOf& picture, const std::vector<Blobs>& blobs,
                                      const CameraModel& camera, const RigDescription& rig) {
   constexpr std::size_t kMostRows = 12;  // a view
   const int least = least_of_row(rig.spheres.count);
@@ -155,7 +155,7 @@ std::vector<SeenInView> partial_rows(const RadianceReader& reader, const RecordO
   tbb::parallel_for(std::size_t{0}, blobs.size(), [&](std::size_t v) {
     const std::vector<PartialRow> rows = find_partial_rows(blobs[v], camera, rig.spheres.count, kMostRows);
     if (rows.empty()) return;
-    best[v] = best_of_view(rows, v, reader.read(record(v)), blobs, camera, rig);
+    best[v] = best_of_view(rows, v, picture(v), blobs, camera, rig);
   });
   const auto chosen = std::max_element(best.begin(), best.end(), [](const auto& a, const auto& b) {
     return b && (!a || a->rank() < b->rank());
@@ -172,7 +172,7 @@ std::vector<SeenInView> partial_rows(const RadianceReader& reader, const RecordO
 
 }  // namespace
 
-RingRow read_ring_row(std::size_t views, const RadianceReader& reader, const RecordOf& record, const CameraModel& camera,
+RingRow read_ring_row(std::size_t views, const PictureOf& picture, const CameraModel& camera,
                       const RigDescription& rig, const std::function<void()>& step) {
   const int spheres = rig.spheres.count;
   const ShapeOf single = [](std::size_t, const SeenHighlight&) { return HighlightShape{}; };
@@ -185,11 +185,11 @@ RingRow read_ring_row(std::size_t views, const RadianceReader& reader, const Rec
     return seen;
   };
   // Single peaks first, to know the line well enough for the ring's shape on each sphere.
-  auto seen = find_highlights(views, reader, record, find, single, step);
+  auto seen = find_highlights(views, picture, find, single, step);
   if (static_cast<int>(pooled_rings(seen, spheres).size()) < spheres) {
-    seen = partial_rows(reader, record, blobs, camera, rig);
+    seen = partial_rows(picture, blobs, camera, rig);
     tbb::parallel_for(std::size_t{0}, views, [&](std::size_t v) {
-      if (!seen[v].empty()) fit_highlights(reader.read(record(v)), v, std::nullopt, single, seen[v]);
+      if (!seen[v].empty()) fit_highlights(picture(v), v, std::nullopt, single, seen[v]);
     });
   }
   const SphereLine line = line_through(camera, pooled_rings(seen, spheres), rig.spheres);
@@ -202,7 +202,7 @@ RingRow read_ring_row(std::size_t views, const RadianceReader& reader, const Rec
     }
     return shape;
   };
-  refit_highlights(reader, record, ring, seen);
+  refit_highlights(picture, ring, seen);
   RingRow row;
   row.rings = pooled_rings(seen, spheres);
   row.line = line_through(camera, row.rings, rig.spheres);

@@ -20,7 +20,7 @@ struct RingRow {
 // pixel, preferring one that recurs in the views. Its places count from the first one seen. Throws Error if fewer than least_of_row(count) are
 // seen, or so few that it cannot be
 // told which of the spheres they are.
-RingRow read_ring_row(std::size_t views, const RadianceReader& reader, const RecordOf& record, const CameraModel& camera,
+RingRow read_ring_row(std::size_t views, const PictureOf& picture, const CameraModel& camera,
                       const RigDescription& rig, const std::function<void()>& step);
 
 }  // namespace lumitexel

@@ -45,8 +45,15 @@ std::string plan_text(int views) {
   return text;
 }
 
-std::string rig_text(const std::string& changes, const TemporaryFolder& folder) {
-  std::ofstream(folder / "rig.toml") << "base = \"" << LUMITEXEL_SOURCE_DIR << "/config/rigs/simulated.toml\"\ncamera.height_px = 200\n" << changes;
+std::string rig_text(const std::string& changes, int pixels, const TemporaryFolder& folder) {
+  std::ofstream file(folder / "rig.toml");
+  file << "base = \"" << LUMITEXEL_SOURCE_DIR << "/config/rigs/simulated.toml\"\ncamera.height_px = " << 200 * pixels << '\n';
+  if (pixels > 1) {
+    file << "camera.width_px = " << 1024 * pixels << "\ncamera.focal_px = [" << 2950.0 * pixels << ", " << 2950.0 * pixels
+         << "]\ncamera.principal_px = [" << 516.3 * pixels << ", " << 379.8 * pixels << "]\n";
+  }
+  file << changes;
+  file.close();
   return read_rig_file(folder / "rig.toml");
 }
 
@@ -68,10 +75,10 @@ double PicturedLights::squared_sigmas(std::size_t view) const {
   return error.dot(light.covariance.inverse() * error);
 }
 
-PicturedLights photograph_spheres(const std::string& changes, int views) {
+PicturedLights photograph_spheres(const std::string& changes, int views, int pixels) {
   const TemporaryFolder folder;
   SessionContent content;
-  content.documents["rig.toml"] = rig_text(changes, folder);
+  content.documents["rig.toml"] = rig_text(changes, pixels, folder);
   content.documents["plan.toml"] = plan_text(views);
   const RigDescription rig = parse_rig(content.documents["rig.toml"], "rig.toml");
   const CapturePlan plan = parse_plan(content.documents["plan.toml"], "plan.toml");

@@ -27,6 +27,7 @@ struct PicturedLights {
 // arm is off, and nothing else; of the picture its upper 200 rows, where the spheres are. Photographs the spheres in so many views (at
 // most 4: turntable a quarter on each, lights to
 // all sides) and runs the light step on the frames. Throws what that throws.
-PicturedLights photograph_spheres(const std::string& changes, int views = 2);
+// pixels: so many times more of them to every length.
+PicturedLights photograph_spheres(const std::string& changes, int views = 2, int pixels = 1);
 
 }  // namespace lumitexel

@@ -38,6 +38,19 @@ TEST(SpherePictures, StateWhatTheirNoiseIsWorth) {
   EXPECT_LT(sum, 5.5);
 }
 
+// The highlights are too large for what finds them at the camera's own scale.
+TEST(SpherePictures, OnACameraOfTwiceThePixelsTheLightIsAsSure) {
+  const PicturedLights found = photograph_spheres("", 2, 2);
+  EXPECT_EQ(found.seen.rings.size(), 6u);
+  expect_within_sigma(found);
+  const PicturedLights coarser = photograph_spheres("");
+  constexpr double kAsSure = 1.3;  // a quarter of the noise a block, but profile and lens count for more
+  for (std::size_t v = 0; v < 2; ++v) {
+    EXPECT_LT(found.lights.spheres.lights[v].covariance.trace(), kAsSure * kAsSure * coarser.lights.spheres.lights[v].covariance.trace());
+    EXPECT_LT((found.seen.rings[0].pixel - 2.0 * coarser.seen.rings[0].pixel).norm(), 0.1);  // of 2048 pixels
+  }
+}
+
 TEST(SpherePictures, ASphereCutByThePicturesEdgeStillCounts) {
   const PicturedLights found = photograph_spheres(spheres_from(-0.176));  // its ring highlight two pixels from the edge
   EXPECT_EQ(found.seen.rings.size(), 6u);
