@@ -5,7 +5,9 @@
 // Two judges. "truth": the model seen by the true camera from the true pose under the true light, against the noise-free radiance; what a
 // model is for. Beside it, how far its pictures are from those of a model that was fitted by the truth: what calibration alone does to
 // them, without what any such model gets wrong. "own": as the session's own calibration has camera, pose and light, against its own
-// photographs; all that a real session can ask, and blind to what calibration got wrong in the same way in all its views.
+// photographs; all that a real session can ask, and blind to what calibration got wrong in the same way in all its views. So is it to a
+// wrong lens: poses registered under it put the mesh where it is in the picture. "Without lens" is without lamp_pattern as well, which needs
+// the boards' places. With --scale, the simulation's errors in pixels (lens_principal_error_px) want scaling by hand: --simulation.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
