@@ -108,7 +108,11 @@ void print_row(const char* what, const PoseErrors& poses, const CalibratedSessio
   std::fflush(stdout);
 }
 
-void run_one(const Options& options, const Disturbance& by, std::uint64_t seed) {
+struct Pair {
+  std::optional<ImageError> given, calibrated;
+};
+
+Pair run_one(const Options& options, const Disturbance& by, std::uint64_t seed) {
   const auto cameras = parse_cameras_txt(read_whole_file(options.oracle / "cameras.txt"), "cameras.txt");
   const auto truth = parse_images_txt(read_whole_file(options.oracle / "images.txt"), "images.txt", cameras);
   const Eigen::Vector3d centre = extent_of(read_mesh(options.oracle / "mesh.ply")).centre;
@@ -123,7 +127,9 @@ void run_one(const Options& options, const Disturbance& by, std::uint64_t seed) 
   const double focal_px = cameras.begin()->second.focal_x_px;
   std::printf("%.2f mm, %.2f degrees, focal length x %.4f, seed %d\n", by.shift_mm, by.turn_deg, by.focal, static_cast<int>(seed));
   const CalibratedSession given = calibrate_session(store, quiet, nullptr, {{CalibrationStep::Pose}});
-  print_row("given", errors_of(given, truth), given, focal_px, heldout(given, options));
+  Pair errors;
+  errors.given = heldout(given, options);
+  print_row("given", errors_of(given, truth), given, focal_px, errors.given);
   CalibrationSummary summary;
   const CalibratedSession calibrated = calibrate_session(store, quiet, &summary);
   int replaced = 0;
@@ -133,19 +139,39 @@ void run_one(const Options& options, const Disturbance& by, std::uint64_t seed) 
     sigma2_m += std::pow(pose.sigma_m.value_or(0.0), 2) / static_cast<double>(truth.size());
     sigma2_deg += std::pow(pose.sigma_deg.value_or(0.0), 2) / static_cast<double>(truth.size());
   }
-  print_row("calibrated", errors_of(calibrated, truth), calibrated, focal_px, heldout(calibrated, options));
+  errors.calibrated = heldout(calibrated, options);
+  print_row("calibrated", errors_of(calibrated, truth), calibrated, focal_px, errors.calibrated);
   std::printf("    %d of %zu poses replaced, lens: %s; stated sigma %.3f mm, %.3f degrees %s\n", replaced, truth.size(),
               summary.lens.source.c_str(), 1e3 * std::sqrt(sigma2_m), std::sqrt(sigma2_deg), summary.pose_problem.c_str());
   std::fflush(stdout);
+  return errors;
+}
+
+// What calibration changed, seed by seed.
+void print_gain(const std::vector<Pair>& pairs) {
+  const auto n = static_cast<double>(pairs.size());
+  if (pairs.size() < 2 || !pairs.front().given) return;
+  std::printf("  calibrated less given, %zu seeds, mean and standard error:", pairs.size());
+  for (const auto member : {&ImageError::relative_rms, &ImageError::clipped_rms, &ImageError::sqrt_rms}) {
+    double mean = 0.0, squares = 0.0;
+    for (const Pair& pair : pairs) mean += ((*pair.calibrated).*member - (*pair.given).*member) / n;
+    for (const Pair& pair : pairs) squares += std::pow((*pair.calibrated).*member - (*pair.given).*member - mean, 2);
+    std::printf("  %+.4f ± %.4f", mean, std::sqrt(squares / (n - 1.0) / n));
+  }
+  std::printf("\n");
 }
 
 int run(const Options& options, const std::vector<double>& shifts_mm, const std::vector<double>& turns_deg, double focal, int seeds) {
-  std::printf("%s\n%s, %s quality, %d materials\n", machine_line().c_str(), options.oracle.string().c_str(), options.fit.quality.c_str(),
-              options.fit.materials);
+  std::printf("%s\n%s, %s quality, %d materials, normals %s\n", machine_line().c_str(), options.oracle.string().c_str(),
+              options.fit.quality.c_str(), options.fit.materials, to_string(options.fit.normals));
   std::printf("poses, rms: turn (degrees), across and along the view (mm); focal length's error (%%)%s\n",
               options.with_fits ? "; held-out error: relative, clipped, square roots" : "");
   for (std::size_t k = 0; k < shifts_mm.size(); ++k) {
-    for (int seed = 1; seed <= seeds; ++seed) run_one(options, {shifts_mm[k], turns_deg[k], 1.0}, static_cast<std::uint64_t>(seed));
+    std::vector<Pair> pairs;
+    for (int seed = 1; seed <= seeds; ++seed) {
+      pairs.push_back(run_one(options, {shifts_mm[k], turns_deg[k], 1.0}, static_cast<std::uint64_t>(seed)));
+    }
+    print_gain(pairs);
   }
   if (focal != 1.0) run_one(options, {0.0, 0.0, focal}, 1);
   return 0;
@@ -161,7 +187,7 @@ int main(int argc, char** argv) {
   std::vector<double> shifts_mm{0.0, 0.2, 0.5, 1.0, 3.0}, turns_deg{0.0, 0.05, 0.1, 0.2, 0.5};
   int materials = 6, seeds = 1;
   double focal = 1.003;
-  bool no_fits = false;
+  bool no_fits = false, plain = false;
   app.add_option("DIR", oracle, "Exact: cameras.txt, images.txt, lights.csv, mesh.ply, images/, masks/")->required();
   app.add_option("--shift-mm", shifts_mm, "Disturbances, one with each turn")->delimiter(',')->capture_default_str();
   app.add_option("--turn-deg", turns_deg, "Disturbances")->delimiter(',')->capture_default_str();
@@ -170,6 +196,7 @@ int main(int argc, char** argv) {
   app.add_option("--quality", quality, "Of the fits")->capture_default_str();
   app.add_option("--materials", materials, "To fit")->capture_default_str();
   app.add_flag("--poses-only", no_fits, "No fits, no held-out error");
+  app.add_flag("--plain", plain, "Fits on the mesh's normals, without light between surfaces: a fifth of the time");
   CLI11_PARSE(app, argc, argv);
   if (shifts_mm.size() != turns_deg.size()) {
     std::fprintf(stderr, "--shift-mm and --turn-deg: as many of one as of the other\n");
@@ -178,6 +205,8 @@ int main(int argc, char** argv) {
   options.oracle = oracle;
   options.fit = lumitexel::FitOptions::preset(quality);
   options.fit.materials = materials;
+  if (plain) options.fit.normals = lumitexel::NormalChoice::Mesh;
+  options.fit.interreflections.wanted = !plain;
   options.with_fits = !no_fits;
   return lumitexel::run(options, shifts_mm, turns_deg, focal, seeds);
 }

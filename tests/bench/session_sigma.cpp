@@ -7,31 +7,23 @@
 
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <sstream>
 
 #include "drivers/error.h"
 #include "processing/calibration/calibrated_session.h"
 #include "processing/calibration/calibration_summary.h"
 #include "processing/calibration/pose/centred_pose.h"
-#include "processing/surface/mesh_file.h"
-#include "rig/new_session.h"
-#include "rig/rig_file.h"
-#include "rig/schedule.h"
-#include "rig/sequencer.h"
 #include "rig/whole_file.h"
-#include "sim/simulated_rig.h"
 #include "tests/bench/machine.h"
+#include "tests/unit/worth/simulated_capture.h"
 #include "tests/unit/temporary_folder.h"
 
 namespace lumitexel {
 namespace {
 
 using nlohmann::json;
-namespace fs = std::filesystem;
 
 struct Options {
   std::string rig, plan;
@@ -71,41 +63,6 @@ void print_row(const std::string& name, const std::vector<Ledger>& entries, doub
   if (numbers == 0.0) return;
   std::printf("| %s | %.4g %s | %.4g %s | %.2f | %.2f |\n", name.c_str(), factor * std::sqrt(rms2 / numbers), unit,
               factor * sigma_sum / trials, unit, std::sqrt(error2 / numbers), freedom > 0.0 ? std::sqrt(scatter2 / freedom) : 0.0);
-}
-
-// The rig with another seed and a picture of fewer pixels, as the text of its file.
-std::string rig_text(const Options& options, int seed, const fs::path& folder) {
-  const fs::path rig = fs::absolute(options.rig);
-  const RigDescription full = parse_rig(read_rig_file(rig), rig.string());
-  const LensDescription& lens = full.camera.lens;
-  const double s = options.scale;
-  const fs::path file = folder / "rig.toml";
-  std::ofstream text(file);
-  text.precision(12);
-  text << "base = \"" << rig.string() << "\"\n[camera]\nwidth_px = " << std::lround(s * full.camera.limits.width_px)
-       << "\nheight_px = " << std::lround(s * full.camera.limits.height_px) << "\nfocal_px = [" << s * lens.focal_x_px << ", "
-       << s * lens.focal_y_px << "]\nprincipal_px = [" << s * lens.principal_x_px << ", " << s * lens.principal_y_px
-       << "]\n[simulation]\nseed = " << seed << '\n';
-  text.close();
-  return read_rig_file(file);
-}
-
-SessionStore capture(const Options& options, int seed, const fs::path& folder) {
-  SessionContent content;
-  content.documents["rig.toml"] = rig_text(options, seed, folder);
-  content.documents["plan.toml"] = read_whole_file(options.plan);
-  content.documents["rig.path"] = fs::absolute(options.rig).string();
-  const RigDescription rig = parse_rig(content.documents["rig.toml"], options.rig);
-  const CapturePlan plan = parse_plan(content.documents["plan.toml"], options.plan);
-  content.shots = schedule_shots(plan, rig, options.plan);
-  const auto world = build_world(rig, options.rig);
-  content.documents["mesh.ply"] = encode_ply(scanned_mesh(*world));
-  content.add_files = [&](const fs::path& directory) { write_truth(*world, rig, plan, directory / "truth"); };
-  SessionStore session = begin_session(folder / "session", content);
-  RigDevices devices = make_simulated_devices(rig, world);
-  NoProgress quiet;
-  take_missing_shots(session, devices, quiet, {});
-  return session;
 }
 
 struct Ledgers {
@@ -178,7 +135,7 @@ void note_scale(const json& truth, const CalibratedSession& session, const Calib
 
 void run_trial(const Options& options, const CalibrationOptions& steps, int seed, Ledgers& all) {
   const TemporaryFolder folder;
-  const SessionStore store = capture(options, seed, folder.path());
+  const SessionStore store = capture_simulated({options.rig, options.plan, options.scale}, seed, folder.path()).session;
   NoProgress quiet;
   CalibrationSummary summary;
   const CalibratedSession session = calibrate_session(store, quiet, &summary, steps);
