@@ -44,6 +44,7 @@ SameMaterials::SameMaterials(const CalibratedSession& reference, const FitOption
   FitSummary summary;
   Model model;
   const Looked looked = look(reference);
+  options_.bases = kMaxBasis;  // how many pay is one more such choice
   const ErrorModel error = error_model(looked.observations, options_);
   const FitInputs inputs{looked.atlas, looked.lumitexels, looked.observations, options_, error};
   clustering_ = fit_reflectance(inputs, {}, "", model, summary, timer, quiet).clustering;
@@ -83,10 +84,12 @@ Model SameMaterials::fit(const CalibratedSession& session) const {
     brdfs.push_back(fit_brdf(material.brdf, samples, refit_options(material, clustering_.fit)).brdf);
   }
   const auto bases = material_bases(brdfs, neighbour_counts(looked.atlas, looked.lumitexels, label, brdfs.size()), observations);
+  std::vector<TexelBasis> mixed;
+  for (std::size_t k = 0; k < brdfs.size(); ++k) mixed.emplace_back(bases[k], brdfs[k], clustering_.materials[k].model.error);
   std::vector<TexelWeights> weights(label.size());
   tbb::parallel_for(std::size_t{0}, weights.size(), [&](std::size_t i) {
     const auto k = static_cast<std::size_t>(label[i]);
-    weights[i] = project_texel(observations.of(i), observations.channels, bases[k], brdfs[k], clustering_.materials[k].model.error, prior_[k]);
+    weights[i] = project_texel(observations.of(i), mixed[k], prior_[k]);
   });
   for (std::size_t k = 0; k < brdfs.size(); ++k) model.materials.push_back({brdfs[k], bases[k], {}});
   model.single = clustering_.single.brdf;
