@@ -1,5 +1,6 @@
 #include "processing/brdf/choose_bases.h"
 
+#include "processing/brdf/left_out_error.h"
 #include "processing/brdf/material_basis.h"
 
 namespace lumitexel {
@@ -14,7 +15,9 @@ BasesChoice choose_bases(const Observations& observations, const std::vector<std
   constexpr std::size_t kOwn = 1 + kVariations;
   if (basis.size() <= kOwn) return all;
   BasesChoice own = with(kOwn);
-  return all.prior.left_out_error < (1.0 - kLeastBasisGain) * own.prior.left_out_error ? all : own;
+  constexpr double kStandardErrors = 2.0;
+  const bool worth = all.prior.left_out_error < (1.0 - kLeastBasisGain) * own.prior.left_out_error;
+  return worth && excess_in_standard_errors(all.prior.by_texel, own.prior.by_texel) < -kStandardErrors ? all : own;
 }
 
 }  // namespace lumitexel

@@ -5,7 +5,7 @@
 namespace lumitexel {
 namespace {
 
-constexpr double kStandardErrors = 2.0;
+constexpr double kStandardErrors = 2.0, kLeastGain = 0.005;
 
 std::vector<double> values(const std::vector<SquaredError>& errors, double SquaredError::*kind) {
   std::vector<double> all;
@@ -14,7 +14,9 @@ std::vector<double> values(const std::vector<SquaredError>& errors, double Squar
 }
 
 bool predicts_better(const std::vector<SquaredError>& later, const std::vector<SquaredError>& earlier) {
-  const SquaredError scale = total_error(earlier);
+  const SquaredError scale = total_error(earlier), total = total_error(later);
+  // Models that hardly differ do so by chance, and surely: every sample errs a little less.
+  if (total.clipped / scale.clipped + total.root / scale.root > 2.0 * (1.0 - kLeastGain)) return false;
   if (excess_in_standard_errors(relative_errors(later, scale), relative_errors(earlier, scale)) >= -kStandardErrors) return false;
   for (const auto kind : {&SquaredError::clipped, &SquaredError::root}) {
     if (excess_in_standard_errors(values(later, kind), values(earlier, kind)) > kStandardErrors) return false;

@@ -145,6 +145,7 @@ PriorChoice choose_prior(const Observations& observations, const std::vector<std
   }
   const double residuals = std::max<double>(1.0, static_cast<double>(choice.samples) * observations.channels);
   choice.prior = candidates[best];
+  for (const std::vector<LeftOut>& texel : sums) choice.by_texel.push_back(texel[best].tempered);
   choice.left_out_error = total[best].tempered / residuals;
   choice.left_out_error_without = total[0].tempered / residuals;
   return choice;

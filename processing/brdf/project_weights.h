@@ -46,6 +46,7 @@ struct PriorChoice {
   double left_out_error = 0;          // misfit of left-out samples, mean a sample and channel, with that prior
   double left_out_error_without = 0;    // the same with the material alone
   std::size_t samples = 0;              // that were left out in turn
+  std::vector<double> by_texel;         // misfit of each tried lumitexel's left-out samples, summed: the same lumitexels for any basis
 };
 
 // The pair of widths whose left-out samples are predicted best in the error model's sense, among those that do not

@@ -56,7 +56,7 @@ std::vector<LumitexelList> members_of(const Clustering& clustering) {
 PriorChoice prior_for(const Observations& observations, const LumitexelList& members, const std::vector<Brdf>& basis,
                       const MaterialModel& material, const FitOptions& options) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  if (options.plain_projection) return {{kInfinity, kInfinity}, 0.0, 0.0, 0};
+  if (options.plain_projection) return {{kInfinity, kInfinity}, 0.0, 0.0, 0, {}};
   return choose_prior(observations, members, TexelBasis(basis, material.brdf, material.error, options.precision));
 }
 

@@ -33,7 +33,7 @@ std::vector<TradeoffSetting> all_settings(int materials) {
   add("ggx", "GGX lobes").options.family = BrdfFamily::Ggx;
   add("family-auto", "lobes of the family that predicts best").options.family.reset();
   add("lobe-shapes-auto", "a lobe shape for each channel where that predicts better").options.lobe_shapes = LobeShapes::Auto;
-  add("bases-1", "every texel its material itself, nothing mixed").options.bases = 1;
+  add("bases-1", "every texel its material, brighter or darker, nothing mixed").options.bases = 1;
   add("bases-3", "a texel mixes its material's own variations").options.bases = 1 + kVariations;
   add("bases-8", "and other materials, asked for or not").options.bases = kMaxBasis;
   add("float", "weights of texels from values in float").options.precision = Precision::Float;

@@ -75,6 +75,8 @@ FitOptions fit_options(const FitSettings& settings) {
   if (options.method == FitMethod::Paper) {
     if (options.materials == 0) throw BadInput("--materials", "auto with --method paper", "a number: the paper does not choose it");
     if (options.family != BrdfFamily::Lafortune) throw BadInput("--family", settings.family + " with --method paper", "lafortune");
+    if (options.bases != 0) throw BadInput("--bases", settings.bases + " with --method paper", "no such option: the paper's are all");
+    if (options.precision != Precision::Double) throw BadInput("--precision", settings.precision + " with --method paper", "double");
     if (!settings.lobe_shapes.empty()) throw BadInput("--lobe-shapes", settings.lobe_shapes + " with --method paper", "no such option: the paper's are separate");
     if (options.errors != ErrorSource::Auto) throw BadInput("--errors", settings.errors + " with --method paper", "no such option");
     FitOptions published = as_published(options);
@@ -154,8 +156,9 @@ std::string error_line(const FitSettings& settings, const FitSummary& summary) {
 // Only what was left to the samples.
 std::string lobes_line(const FitSettings& settings, const FitSummary& summary) {
   std::string text;
+  if (settings.lobes == 0) return "";  // nothing was asked
   if (settings.family == "auto") text += line("lobes: %s, the family that predicted left-out samples best\n", to_string(summary.family));
-  if (settings.lobe_shapes == "auto") {
+  if (settings.lobe_shapes == "auto" && summary.single.by_channel.size() > 1) {
     text += line("lobe shapes: %s: a shape for each colour channel %s left-out samples better\n", to_string(summary.lobe_shapes),
                  summary.lobe_shapes == LobeShapes::Separate ? "predicted" : "did not predict");
   }

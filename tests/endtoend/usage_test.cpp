@@ -54,7 +54,7 @@ TEST(Usage, AFolderOfTheWrongKindIsCalledWhatItIs) {
 }
 
 TEST(Usage, AWrongValueIsAnsweredWithItsOptionAndTheRightOnes) {
-  expect_refused("fit S --out M --family blinn", {"--family: 'blinn'", "lafortune, ggx or ward"});
+  expect_refused("fit S --out M --family blinn", {"--family: 'blinn'", "lafortune, ggx, ward or auto"});
   expect_refused("fit S --out M --quality fine", {"--quality: 'fine'", "draft, standard or reference"});
   expect_refused("fit S --out M --errors none", {"--errors: 'none'", "auto, given, labels or estimated"});
   expect_refused("fit S --out M --method ours", {"--method: 'ours'", "lumitexel or paper"});

@@ -169,26 +169,28 @@ TEST(ProjectTexel, MoreSamplesMeanASmallerStatedUncertaintyAndItIsTrue) {
   EXPECT_LT(std::sqrt(real / stated), 2.0);
 }
 
-// How many of the first material's bases, the second material among them, 200 texels with 5 % noise are given. Texels differ by 30 % in
+// How many of the first material's bases, the second material among them, texels with 5 % noise are given. They differ by 30 % in
 // brightness, and mix up to so much of the second material.
-std::size_t bases_given(double most_of_other, unsigned seed) {
+std::size_t bases_given(double most_of_other, unsigned seed, int texels = 200, int samples = 8) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> brightness(0.7, 1.3), other(0.0, most_of_other);
   Observations observations;
-  for (int i = 0; i < 200; ++i) add_mixture(observations, brightness(random), other(random), 8, 0.05, random);
+  for (int i = 0; i < texels; ++i) add_mixture(observations, brightness(random), other(random), samples, 0.05, random);
   const std::vector<std::vector<Brdf>> bases = material_bases(two_bases(), {{0, 1}, {1, 0}}, observations);
   return choose_bases(observations, everyone(observations), bases[0], kError, Precision::Double).bases;
 }
 
 TEST(ChooseBases, OtherMaterialsEnterOnlyWhereTexelsMixThem) {
   constexpr int kSeeds = 40, kWanted = 38;  // 95 of 100
-  int asked_for = 0, kept_out = 0;
+  int asked_for = 0, kept_out = 0, kept_out_of_few = 0;
   for (unsigned seed = 1; seed <= kSeeds; ++seed) {
     if (bases_given(0.5, seed) == 4) ++asked_for;
     if (bases_given(0.0, seed) == 1 + kVariations) ++kept_out;
+    if (bases_given(0.0, seed, 30, 3) == 1 + kVariations) ++kept_out_of_few;
   }
   EXPECT_GE(asked_for, kWanted);
   EXPECT_GE(kept_out, kWanted);
+  EXPECT_GE(kept_out_of_few, kWanted);
 }
 
 // The float kernels' error is 1e-6 of a value; a weight is what several values leave of one another.
