@@ -36,6 +36,7 @@ struct FitSummary {
   LobeShapes lobe_shapes = LobeShapes::Shared;   // never Auto
   std::vector<std::size_t> texels_by_material, texels_before_normals;  // the second only where normals were fitted
   std::vector<PriorChoice> prior;    // per material, of the last stage
+  std::vector<std::size_t> bases_by_material;  // how many BRDFs its texels mix
   StageError single, cluster, projection;
   std::optional<StageError> pfa;     // if principal functions were asked for
   std::optional<StageError> normal;  // if normals were fitted

@@ -100,12 +100,14 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
                        {"bases", options.bases == 0 ? json("auto") : json(options.bases)},
                        {"precision", to_string(options.precision)},
                        {"plain_projection", options.plain_projection},
-                       {"errors", to_string(options.errors)},
+                       {"errors", options.method == FitMethod::Paper ? json(nullptr) : json(to_string(options.errors))},
                        {"relative_error", summary.error.relative},
                        {"error_floor", summary.error.floor}};
   // What came of the choices: never "auto".
-  object["errors"] = to_string(summary.errors);
+  const bool paper = options.method == FitMethod::Paper;
+  object["errors"] = paper ? json(nullptr) : json(to_string(summary.errors));  // the paper's method has its own, eq. 6
   object["family"] = to_string(summary.family);
+  object["bases_by_material"] = summary.bases_by_material;
   object["lobe_shapes"] = to_string(summary.lobe_shapes);
   object["materials"] = summary.texels_by_material.size();
   object["layout"] = layout_json(summary.layout);

@@ -77,6 +77,7 @@ std::vector<TexelWeights> project_all(const Observations& observations, const Cl
   for (std::size_t j = 0; j < members.size(); ++j) {
     const MaterialModel& material = clustering.materials[j].model;
     summary.prior.push_back(choose_prior_and_bases(observations, members[j], material, options, shrinks, model.materials[j].basis));
+    summary.bases_by_material.push_back(model.materials[j].basis.size());
     const TexelPrior prior = summary.prior.back().prior;
     const TexelBasis basis(model.materials[j].basis, material.brdf, material.error, options.precision);
     oneapi::tbb::parallel_for(std::size_t{0}, members[j].size(), [&](std::size_t k) {
@@ -165,6 +166,7 @@ Reflectance fit_reflectance(const FitInputs& inputs, const MaterialsBefore& befo
   Reflectance result;
   model.materials.clear();
   summary.prior.clear();
+  summary.bases_by_material.clear();
   summary.texels_by_material.clear();
   timer.begin("materials" + pass);
   result.clustering = learn_materials(observations, options, error, before, progress);
@@ -184,6 +186,7 @@ void seek_principal_functions(const FitInputs& inputs, Reflectance& reflectance,
   for (ModelMaterial& material : model.materials) material.projection_basis = material.basis;
   move_bases(inputs.observations, reflectance.clustering, inputs.options, summary, model, progress);
   summary.prior.clear();
+  summary.bases_by_material.clear();
   summary.texels_by_material.clear();
   reflectance.projection = std::move(reflectance.weights);
   reflectance.weights = project_all(inputs.observations, reflectance.clustering, inputs.options, false, model, summary, progress);

@@ -39,9 +39,9 @@ std::vector<TradeoffSetting> all_settings(int materials) {
   add("float", "weights of texels from values in float").options.precision = Precision::Float;
   add("normals-mesh", "the mesh's normals, nothing fitted").options.normals = NormalChoice::Mesh;
   add("interreflections-off", "light between surfaces left in").options.interreflections.wanted = false;
-  FitOptions& plain = add("plain", "neither normals nor light between surfaces").options;
-  plain.normals = NormalChoice::Mesh;
-  plain.interreflections.wanted = false;
+  FitOptions& direct = add("mesh-direct", "the mesh's normals, and light between surfaces left in").options;
+  direct.normals = NormalChoice::Mesh;
+  direct.interreflections.wanted = false;
   FitOptions& paper = add(kPaperSetting, "clustering, fits and projection as published").options;
   paper = as_published(paper);
   for (const std::size_t views : {16u, 12u, 8u}) {

@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
 #include "drivers/error.h"
+#include "processing/brdf/material_basis.h"
 #include "processing/calibration/calibrated_session.h"
 #include "processing/fit/fit_model.h"
 #include "processing/model/model_file.h"
@@ -165,6 +167,15 @@ std::string lobes_line(const FitSettings& settings, const FitSummary& summary) {
   return text;
 }
 
+// Only where it was left to the samples.
+std::string bases_line(const FitSettings& settings, const FitSummary& summary) {
+  if (settings.bases != "auto" || settings.method == "paper" || settings.plain_projection) return "";
+  const auto mixed = std::count_if(summary.bases_by_material.begin(), summary.bases_by_material.end(),
+                                   [](std::size_t bases) { return bases > 1 + kVariations; });
+  return line("bases: texels of %td of %zu materials mix other materials too, the others' only variations of their own\n", mixed,
+              summary.bases_by_material.size());
+}
+
 std::string normals_line(const FitSummary& summary) {
   if (!summary.normals_worth) return "";
   const NormalsWorth& worth = *summary.normals_worth;
@@ -209,6 +220,7 @@ std::string fit_text(const FitSettings& settings, const FitSummary& summary) {
   text += layout_text(summary.layout);
   text += error_line(settings, summary);
   text += lobes_line(settings, summary);
+  text += bases_line(settings, summary);
   text += normals_line(summary);
   text += indirect_line(summary);
   text += rms_table(summary);

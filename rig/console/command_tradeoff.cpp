@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -72,6 +73,20 @@ std::string session_name(const fs::path& session) {
   return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
 }
 
+// What each setting is, a line each.
+std::string meanings(const std::vector<TradeoffSetting>& settings) {
+  std::string text = "Settings: the presets, and the standard preset with this changed\n";
+  for (const TradeoffSetting& setting : settings) text += formatted("  %-20s %s\n", setting.name.c_str(), setting.what.c_str());
+  return text;
+}
+
+std::string tradeoff_legend(const Tradeoff& tradeoff) {
+  std::vector<TradeoffSetting> settings;
+  for (const TradeoffMeasurement& m : tradeoff.measurements) settings.push_back(m.setting);
+  const bool standard = std::any_of(settings.begin(), settings.end(), [](const auto& setting) { return setting.name == kStandardSetting; });
+  return meanings(settings) + (standard ? "" : "No gains: the setting standard, which they are measured against, was not asked for.\n");
+}
+
 std::string setting_names() {
   std::string names;
   for (const TradeoffSetting& setting : tradeoff_settings(4, true, {})) names += (names.empty() ? "" : ", ") + setting.name;
@@ -86,7 +101,7 @@ CommandResult tradeoff_command(const TradeoffArguments& arguments, CommandContex
   const std::string json = tradeoff_json(tradeoff);
   CommandResult result;
   result.json = nlohmann::json::parse(json);
-  result.text = tradeoff_text(tradeoff);
+  result.text = tradeoff_text(tradeoff) + tradeoff_legend(tradeoff);
   if (!arguments.page.empty()) {
     write_whole_file(arguments.page, tradeoff_page(session_name(arguments.session), tradeoff, json));
     result.text += arguments.page + ": the same as a page with the front drawn\n";
@@ -105,6 +120,7 @@ void add_tradeoff_command(CLI::App& app, CommandAction& action) {
       ->capture_default_str();
   command->add_flag("--reference,--full", arguments->full, "Also the reference preset, which learns on every surface point and takes long");
   command->add_option("--only", arguments->only, "These settings only: " + setting_names())->delimiter(',')->type_name("NAME");
+  command->footer(meanings(tradeoff_settings(4, true, {})));
   command->add_option("--page", arguments->page, "HTML file to write, with a drawing of error against seconds");
   command->callback([arguments, &action] {
     action = [arguments](CommandContext& context) { return tradeoff_command(*arguments, context); };

@@ -23,7 +23,7 @@ constexpr auto kUsed = static_cast<std::uint8_t>(SampleVerdict::Used);
 // The error model of every material, if it was the one that the fit's options gave to all of them.
 std::optional<ErrorModel> recorded_error(const json& provenance) {
   const json options = provenance.value("options", json::object());
-  if (provenance.value("errors", "") != "given" || options.value("method", "") != "lumitexel") return std::nullopt;
+  if (options.value("method", "") != "lumitexel" || provenance.value("errors", "") != "given") return std::nullopt;
   return ErrorModel(options.at("relative_error").get<double>(), options.at("error_floor").get<double>());
 }
 
