@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "processing/calibration/light/median.h"
+
 namespace lumitexel {
 namespace {
 
@@ -19,12 +21,6 @@ constexpr double kModelError = 0.02, kModelErrorOfPart = 1.5;
 constexpr double kOneInTwenty = 1.645;
 constexpr int kLeastSpheres = 3;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Unit vector of t's plane across the plane of camera, sphere and highlight; along x where the highlight faces the camera.
 Eigen::Vector2d across_slope(const SphereInView& view, const Eigen::Vector2d& pixel) {
