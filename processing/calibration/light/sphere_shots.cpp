@@ -37,12 +37,14 @@ int block_of(const CameraModel& camera, const RigDescription& rig) {
   return std::max(1, 2 * static_cast<int>(radius_px / (2.0 * kLeastRadiusPx)));
 }
 
-// In the pixels of the picture itself.
-void scale(std::vector<HighlightPixel>& highlights, int block) {
+// In the pixels of the picture itself. Blocks of a mosaic of colours are its green alone.
+void scale(std::vector<HighlightPixel>& highlights, int block, Mosaic mosaic) {
+  const bool green_alone = block > 1 && mosaic != Mosaic::Mono;
   for (HighlightPixel& highlight : highlights) {
     highlight.pixel *= block;
     highlight.sigma_px *= block;
     for (double& flux : highlight.flux) flux *= block * block;
+    if (green_alone) highlight.flux[0] = highlight.flux[2] = 0.0;
   }
 }
 
@@ -87,10 +89,11 @@ SphereHighlights read_sphere_highlights(const RadianceReader& reader, const std:
     if (std::abs(radius_m - expected.lamp.radius_m) <= size.sigma_m) break;
     expected.lamp.radius_m = radius_m;
   }
-  scale(seen.rings, block);
-  for (std::vector<HighlightPixel>& view : seen.points) scale(view, block);
+  const Mosaic mosaic = rig.camera.limits.mosaic;
+  scale(seen.rings, block, mosaic);
+  for (std::vector<HighlightPixel>& view : seen.points) scale(view, block, mosaic);
   for (auto& view : seen.strays) {
-    for (std::vector<HighlightPixel>& stray : view) scale(stray, block);
+    for (std::vector<HighlightPixel>& stray : view) scale(stray, block, mosaic);
   }
   return seen;
 }
