@@ -121,6 +121,26 @@ TEST(SessionStrays, OneOfUnknownStrengthCountsAsMuchAsTheLamp) {
   EXPECT_FALSE(strays.summarise({"a", "b", "c", "d"}, kCard, session.lamp(0))[0].card_share);
 }
 
+// At a metre in one view, where the other cannot tell its distance: one light, which stands, with its place.
+TEST(SessionStrays, OneThatIsPlacedInSomeViewsOnlyIsOne) {
+  const SphereLine line = StraySession({}).bench().spheres.line;
+  const Eigen::Vector3d middle = 0.5 * (line.sphere(0).centre + line.sphere(5).centre), far = middle + 400.0 * (kStray - middle);
+  for (const auto& [first, second] : {std::pair{kStray, far}, std::pair{far, kStray}}) {
+    const StraySession session({{0, first}, {2, second}});
+    const std::vector<StrayLightSummary> found = session.strays().summarise({"a", "b", "c", "d"}, kCard, session.lamp(0));
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_TRUE(found[0].placed);
+    EXPECT_EQ(found[0].views.size(), 2u);
+    EXPECT_LT((found[0].position_in_rig - kStray).norm(), 0.05);
+  }
+}
+
+TEST(SessionStrays, OnACardThatFacesAwayFromTheLampIsNotKnown) {
+  const StraySession session({{0, kStray}, {2, kStray}});
+  const LitPlace away{kCard.position, Eigen::Vector3d::UnitZ()};
+  EXPECT_EQ(session.strays().shares(away, session.lamp(0), 0), std::vector<double>(3, 1.0));
+}
+
 TimedReading reading_at(double time_s, const Eigen::Vector3d& lamp, double intensity, double share) {
   TimedReading timed{time_s, lamp, CardReading{}, {}};
   timed.reading->intensity = {1.1 * intensity * (1.0 + share), intensity * (1.0 + share), 0.8 * intensity * (1.0 + share)};
