@@ -20,12 +20,13 @@ EmitterDisc lamp_of(const RigDescription& rig) {
 constexpr double kReachOfRadius = 0.25;
 constexpr double kMostOfRadius = 0.2;  // a lamp's: as the rig's file may have it
 
+// The file's, unless two sigmas contradict it.
 double lamp_radius_by(const LampSize& size, double in_file_m) {
   if (!size.measured) return in_file_m;
-  constexpr double kConfirmedSigmas = 2.0;
-  const bool confirmed = in_file_m > 0.0 && std::abs(in_file_m - size.radius_m) <= kConfirmedSigmas * size.sigma_m;
-  if (size.resolved) return confirmed ? in_file_m : size.radius_m;
-  return in_file_m <= size.upper_m ? in_file_m : 0.0;
+  constexpr double kSigmas = 2.0, kOneInTwenty = 1.645;
+  if (size.resolved) return std::abs(in_file_m - size.radius_m) <= kSigmas * size.sigma_m ? in_file_m : size.radius_m;
+  // The bound goes with the square root of its sigmas, at most: g(0) itself may be above zero.
+  return in_file_m <= std::sqrt(kSigmas / kOneInTwenty) * size.upper_m ? in_file_m : 0.0;
 }
 
 // Highlights are looked for and fitted at the scale that all of this is made for, spheres of 40 to 80 px radius: a highlight is a share of
