@@ -105,6 +105,7 @@ class SessionCalibration {
     if (lamp.radius_m != in_.rig.light_positioner.lamp_radius_m) lamp.radius_source = "highlights";
     if (!seen.size.measured) return;
     if (seen.size.resolved) {
+      lamp.highlights_radius_found = seen.size.found;
       lamp.highlights_radius_m = seen.size.radius_m;
       lamp.highlights_radius_sigma_m = seen.size.sigma_m;
     } else {

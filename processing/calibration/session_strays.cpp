@@ -40,11 +40,15 @@ std::vector<double> SessionStrays::shares(const LitPlace& place, const Eigen::Ve
   return sums;
 }
 
-std::vector<double> SessionStrays::shares(const LitPlace& place, const Eigen::Vector3d& lamp_in_rig) const {
+std::size_t SessionStrays::nearest_view(const Eigen::Vector3d& lamp_in_rig) const {
   const auto nearest = std::min_element(lamps_in_rig_.begin(), lamps_in_rig_.end(), [&](const auto& a, const auto& b) {
     return (a - lamp_in_rig).squaredNorm() < (b - lamp_in_rig).squaredNorm();
   });
-  return shares(place, lamp_in_rig, static_cast<std::size_t>(nearest - lamps_in_rig_.begin()));
+  return static_cast<std::size_t>(nearest - lamps_in_rig_.begin());
+}
+
+std::vector<double> SessionStrays::shares(const LitPlace& place, const Eigen::Vector3d& lamp_in_rig) const {
+  return shares(place, lamp_in_rig, nearest_view(lamp_in_rig));
 }
 
 std::vector<StrayLightSummary> SessionStrays::summarise(const std::vector<std::string>& view_names, const LitPlace& card,
@@ -55,6 +59,7 @@ std::vector<StrayLightSummary> SessionStrays::summarise(const std::vector<std::s
     StrayLightSummary& light = summaries.emplace_back();
     for (const std::size_t v : stray.views) light.views.push_back(view_names[v]);
     light.placed = stray.placed;
+    light.counted_in_scale = is_there(stray, nearest_view(lamp_in_rig));
     light.position_in_rig = stray.placed ? rig_from_camera * stray.position : rig_from_camera.linear() * stray.position;
     light.sigma_m = per_axis_sigma(stray.covariance);
     const auto share = stray_share(stray, line_, lamp_, in_camera(card), camera_from_rig_ * lamp_in_rig);

@@ -29,6 +29,7 @@ class SessionStrays {
                                            const Eigen::Vector3d& lamp_in_rig) const;
 
  private:
+  std::size_t nearest_view(const Eigen::Vector3d& lamp_in_rig) const;
   LitPlace in_camera(const LitPlace& place) const;
 
   Eigen::Isometry3d camera_from_rig_;

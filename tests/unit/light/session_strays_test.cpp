@@ -95,6 +95,8 @@ TEST(SessionStrays, OneOfASingleViewCountsThereAndUnderALampNearIt) {
   EXPECT_GT(strays.shares(kCard, session.lamp(1), 1)[0], 0.1);
   EXPECT_GT(strays.shares(kCard, session.lamp(1) + Eigen::Vector3d(0.01, 0.01, 0.0))[0], 0.1);
   EXPECT_EQ(strays.shares(kCard, session.lamp(0))[0], 0.0);
+  EXPECT_TRUE(strays.summarise({"a", "b", "c", "d"}, kCard, session.lamp(1))[0].counted_in_scale);
+  EXPECT_FALSE(strays.summarise({"a", "b", "c", "d"}, kCard, session.lamp(0))[0].counted_in_scale);
 }
 
 // Its distance the spheres cannot tell, its irradiance they can: the same on card and spheres.
