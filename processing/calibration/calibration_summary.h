@@ -29,8 +29,11 @@ struct StrayLightSummary {
   Eigen::Vector3d position_in_rig = Eigen::Vector3d::Zero();  // as the rig's file has the camera; not placed: unit vector towards it
   double sigma_m = 0;                                          // per axis; 0 if not placed
   // Its irradiance at the gray card over the lamp's, in the channel with most of it, if nothing stands between: empty where it
-  // could not be told (then the scale's sigma counts it as much as the lamp).
+  // could not be told; channels in which it could not the scale's sigma counts as much as the lamp.
   std::optional<double> card_share{}, card_share_sigma{};
+  // Whether the scale's sigma holds it: false where one view alone showed it, and not the one whose lamp stood nearest to that of the
+  // gray card's bracket (then it is taken not to have shone there).
+  bool counted_in_scale = true;
 };
 
 struct SensorSummary {
@@ -86,6 +89,7 @@ struct LampSummary {
   // By the highlights, whatever the source: a radius with its sigma, or a 95 % bound of one too small to be told from a point; neither
   // where they tell nothing.
   std::optional<double> highlights_radius_m{}, highlights_radius_sigma_m{}, highlights_radius_bound_m{};
+  bool highlights_radius_found = true;  // false: the search ended at the largest lamp there may be, or before it was near
 };
 
 // Shares of a quantity's variance.

@@ -27,7 +27,8 @@ namespace lumitexel {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LightSummary, view, position_in_world, sigma_m, from_spheres, highlights, outliers,
                                    residual_px, spheres_alone_in_world, spheres_alone_sigma_m, off_the_arm)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StrayLightSummary, views, placed, position_in_rig, sigma_m, card_share, card_share_sigma)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StrayLightSummary, views, placed, position_in_rig, sigma_m, card_share, card_share_sigma,
+                                   counted_in_scale)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SensorSummary, source, electrons_per_dn, read_noise_dn, black_level_dn,
                                    saturation_dn, electrons_per_dn_sigma, read_noise_dn_sigma, black_level_dn_sigma,
                                    saturation_dn_sigma, linear, coldest_c, warmest_c, brackets_with_scaled_darks,
@@ -38,7 +39,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PoseSummary, view, source, sigma_m, sigma_deg
                                    contradiction, problem)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LampSummary, drifts, factor, factor_sigma, card_views, card_outliers,
                                    pattern_parameters, at_10_deg, at_10_deg_sigma, card_source, radius_m, radius_source,
-                                   highlights_radius_m, highlights_radius_sigma_m, highlights_radius_bound_m)
+                                   highlights_radius_m, highlights_radius_sigma_m, highlights_radius_bound_m,
+                                   highlights_radius_found)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JointSummary, tried, taken, chi2_gain)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(UncertaintyShare, quantity, source, share)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CalibrationSummary, lights, stray_lights, spheres_seen, sphere_residual_px, sphere_sigma_scale, arm_scatter_m,

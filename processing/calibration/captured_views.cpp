@@ -28,7 +28,7 @@ namespace lumitexel {
 namespace {
 
 // Part of the key: change it with anything that changes what a calibration gives.
-constexpr const char* kMethod = "captured calibration 7";
+constexpr const char* kMethod = "captured calibration 8";
 // Room for the mask about the mesh's picture: a coarse mesh's error, and that of a pose that nobody measured.
 constexpr int kRegisteredMargin_px = 4, kNominalMargin_px = 8;
 
@@ -105,6 +105,7 @@ class SessionCalibration {
     if (lamp.radius_m != in_.rig.light_positioner.lamp_radius_m) lamp.radius_source = "highlights";
     if (!seen.size.measured) return;
     if (seen.size.resolved) {
+      lamp.highlights_radius_found = seen.size.found;
       lamp.highlights_radius_m = seen.size.radius_m;
       lamp.highlights_radius_sigma_m = seen.size.sigma_m;
     } else {
@@ -112,7 +113,7 @@ class SessionCalibration {
     }
   }
 
-  LitPlace place_of(const CardReading& reading) const { return {reading.card_in_rig, in_.rig.gray_card.normal_in_rig}; }
+  static LitPlace place_of(const CardReading& reading) { return {reading.card_in_rig, reading.normal_in_rig}; }
 
   void note_strays(const TimedReading& card) {
     std::vector<std::string> names;

@@ -79,13 +79,16 @@ std::optional<CardReading> SessionCard::read(const MosaicRadiance& picture, cons
       measured = std::move(posed.measured);
       reading.pose_sigma = posed.pose_sigma;
       reading.light_sigma = posed.light_sigma;
-      reading.card_in_rig = camera_from_rig.inverse() * (pose_->camera_from_card * card.centre_in_rig);
+      const Eigen::Isometry3d rig_from_card = camera_from_rig.inverse() * pose_->camera_from_card;
+      reading.card_in_rig = rig_from_card * card.centre_in_rig;
+      reading.normal_in_rig = rig_from_card.linear() * card.normal_in_rig.normalized();
     } else {
       measured = measure_gray_card(picture, camera_, camera_from_rig, card, light.position_in_rig);
       // Intensity goes with the distance squared.
       reading.light_sigma =
           2.0 * per_axis_sigma(light.covariance) / (light.position_in_rig - card.centre_in_rig).norm();
       reading.card_in_rig = card.centre_in_rig;
+      reading.normal_in_rig = card.normal_in_rig.normalized();
     }
   } catch (const BadInput&) {
     return std::nullopt;

@@ -18,6 +18,7 @@ struct CardReading {
   std::vector<double> pixel_scatter;  // per channel, relative
   double pixel_sigma = 0, light_sigma = 0, pose_sigma = 0;  // relative; the last is common to all readings
   Eigen::Vector3d card_in_rig = Eigen::Vector3d::Zero();    // its centre
+  Eigen::Vector3d normal_in_rig = Eigen::Vector3d::UnitZ();  // unit, as the card was posed
 };
 
 class SessionCard {

@@ -23,11 +23,6 @@ Eigen::Isometry3d lamp_frame(const CapturedInputs& in, const SessionLights& ligh
 // White patches are read in green.
 double green_of(const std::vector<double>& channels) { return channels.size() == 3 ? channels[1] : channels[0]; }
 
-LampPattern widened(const LampPattern& pattern, const LampPattern& other) {
-  const LampPattern::Parameters off = other.parameters() - pattern.parameters();
-  return {pattern.parameters(), pattern.covariance() + off * off.transpose()};
-}
-
 // A reading freed of the lamp's pattern: the mean over the channels' logarithms, and each channel's distance from it.
 struct FreedReading {
   double log_mean = 0;
@@ -123,17 +118,16 @@ LampPattern measure_lamp_pattern(const CapturedFrames& frames, const CapturedInp
   const Eigen::Isometry3d lamp_from_camera =
       lamp_frame(in, lights, light.position_in_rig) * in.rig.camera.camera_from_rig.inverse();
   const Eigen::Isometry3d rig_from_camera = in.rig.camera.camera_from_rig.inverse();
-  std::vector<PatternSample> samples, freed;
+  std::vector<PatternSample> samples;
+  std::vector<double> shares;
   for (const WhitePatch& patch : white_patches(reader.read(bracket), lens.camera, board->second, *in.rig.board)) {
     samples.push_back({0, lamp_from_camera * patch.position_in_camera,
                        lamp_from_camera.linear() * patch.normal_in_camera, patch.radiance, patch.variance});
-    freed.push_back(samples.back());
     if (!strays.any()) continue;
     const LitPlace place{rig_from_camera * patch.position_in_camera, rig_from_camera.linear() * patch.normal_in_camera};
-    freed.back().radiance /= 1.0 + green_of(strays.shares(place, light.position_in_rig));
+    shares.push_back(green_of(strays.shares(place, light.position_in_rig)));
   }
-  PatternFit fit = fit_lamp_pattern(samples);
-  if (strays.any()) fit.pattern = widened(fit.pattern, fit_lamp_pattern(freed).pattern);
+  const PatternFit fit = strays.any() ? fit_lamp_pattern(samples, shares) : fit_lamp_pattern(samples);
   summary.lamp.pattern_parameters = fit.parameters;
   if (fit.parameters == 0) return fit.pattern;
   const double angle = 10.0 * std::numbers::pi / 180.0;

@@ -32,19 +32,23 @@ std::vector<double> SessionStrays::shares(const LitPlace& place, const Eigen::Ve
     if (!is_there(stray, view)) continue;
     const auto share = stray_share(stray, line_, lamp_, in_camera(place), camera_from_rig_ * lamp_in_rig);
     for (std::size_t c = 0; c < channels_; ++c) {
-      sums[c] += share ? share->value[c] : kUnknownShare;
-      squares[c] += share ? share->sigma[c] * share->sigma[c] : 0.0;
+      sums[c] += share[c] ? share[c]->value : kUnknownShare;
+      squares[c] += share[c] ? share[c]->sigma * share[c]->sigma : 0.0;
     }
   }
   for (std::size_t c = 0; c < channels_; ++c) sums[c] = std::sqrt(sums[c] * sums[c] + squares[c]);
   return sums;
 }
 
-std::vector<double> SessionStrays::shares(const LitPlace& place, const Eigen::Vector3d& lamp_in_rig) const {
+std::size_t SessionStrays::nearest_view(const Eigen::Vector3d& lamp_in_rig) const {
   const auto nearest = std::min_element(lamps_in_rig_.begin(), lamps_in_rig_.end(), [&](const auto& a, const auto& b) {
     return (a - lamp_in_rig).squaredNorm() < (b - lamp_in_rig).squaredNorm();
   });
-  return shares(place, lamp_in_rig, static_cast<std::size_t>(nearest - lamps_in_rig_.begin()));
+  return static_cast<std::size_t>(nearest - lamps_in_rig_.begin());
+}
+
+std::vector<double> SessionStrays::shares(const LitPlace& place, const Eigen::Vector3d& lamp_in_rig) const {
+  return shares(place, lamp_in_rig, nearest_view(lamp_in_rig));
 }
 
 std::vector<StrayLightSummary> SessionStrays::summarise(const std::vector<std::string>& view_names, const LitPlace& card,
@@ -55,13 +59,15 @@ std::vector<StrayLightSummary> SessionStrays::summarise(const std::vector<std::s
     StrayLightSummary& light = summaries.emplace_back();
     for (const std::size_t v : stray.views) light.views.push_back(view_names[v]);
     light.placed = stray.placed;
+    light.counted_in_scale = is_there(stray, nearest_view(lamp_in_rig));
     light.position_in_rig = stray.placed ? rig_from_camera * stray.position : rig_from_camera.linear() * stray.position;
     light.sigma_m = per_axis_sigma(stray.covariance);
     const auto share = stray_share(stray, line_, lamp_, in_camera(card), camera_from_rig_ * lamp_in_rig);
-    if (!share) continue;
-    const auto largest = std::max_element(share->value.begin(), share->value.begin() + static_cast<std::ptrdiff_t>(channels_));
-    light.card_share = *largest;
-    light.card_share_sigma = share->sigma[static_cast<std::size_t>(largest - share->value.begin())];
+    for (std::size_t c = 0; c < channels_; ++c) {
+      if (!share[c] || (light.card_share && share[c]->value <= *light.card_share)) continue;
+      light.card_share = share[c]->value;
+      light.card_share_sigma = share[c]->sigma;
+    }
   }
   return summaries;
 }

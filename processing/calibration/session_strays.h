@@ -17,9 +17,10 @@ class SessionStrays {
   SessionStrays(const SphereHighlights& seen, const SessionLights& lights, const CameraModel& camera, const RigDescription& rig);
 
   bool any() const { return !strays_.empty(); }
-  // Upper ends of one sigma, per channel, of all strays' irradiance over the lamp's at a place (rig's frame) that faces a lamp
+  // Root mean squares by the shares' sigmas, per channel, of all strays' irradiance over the lamp's at a place (rig's frame) under a lamp
   // standing there. Counted are those that stand still (seen in two views or more) and those of that view; without a view,
-  // of the one whose lamp stood nearest. A stray whose strength is not known counts as much as the lamp. Empty if there is no stray.
+  // of the one whose lamp stood nearest. In a channel in which a stray's share is not known it counts as much as
+  // the lamp. Empty if there is no stray.
   std::vector<double> shares(const LitPlace& place, const Eigen::Vector3d& lamp_in_rig, std::size_t view) const;
   std::vector<double> shares(const LitPlace& place, const Eigen::Vector3d& lamp_in_rig) const;
 
@@ -28,12 +29,13 @@ class SessionStrays {
                                            const Eigen::Vector3d& lamp_in_rig) const;
 
  private:
+  std::size_t nearest_view(const Eigen::Vector3d& lamp_in_rig) const;
   LitPlace in_camera(const LitPlace& place) const;
 
   Eigen::Isometry3d camera_from_rig_;
   SphereLine line_;
   std::vector<StrayLight> strays_;
-  std::vector<std::optional<Strength>> lamp_;  // a sphere
+  std::vector<Strength> lamp_;  // a sphere
   std::vector<Eigen::Vector3d> lamps_in_rig_;  // a view
   std::size_t channels_;
 };

@@ -108,7 +108,8 @@ std::string scale_section(const CalibrationSummary& summary) {
                           : "no angular pattern was needed or measured.");
   text << " Its radius is " << html::number(1e3 * lamp.radius_m) << " mm, from: " << lamp.radius_source << "; ";
   if (lamp.highlights_radius_m) {
-    text << "by its highlights " << html::number(1e3 * *lamp.highlights_radius_m) << " ± " << html::number(1e3 * *lamp.highlights_radius_sigma_m, 2) << " mm.";
+    text << "by its highlights " << html::number(1e3 * *lamp.highlights_radius_m) << " ± " << html::number(1e3 * *lamp.highlights_radius_sigma_m, 2) << " mm";
+    text << (lamp.highlights_radius_found ? "." : ", but the search for it came to no end.");
   } else if (lamp.highlights_radius_bound_m) {
     text << "its highlights are a point's, up to " << html::number(1e3 * *lamp.highlights_radius_bound_m, 2) << " mm at 95 %.";
   } else {
@@ -127,7 +128,9 @@ std::string stray_note(const StrayLightSummary& light) {
   note += light.card_share ? "with " + html::number(100.0 * *light.card_share) + " ± " + html::number(100.0 * *light.card_share_sigma, 2) +
                                  " % of the lamp's light if nothing shades it."
                            : std::string("nobody knows how strongly.");
-  return note + " Nothing is corrected; the scale's sigma covers it. Move or cover it.";
+  note += light.counted_in_scale ? " Nothing is corrected; the scale's sigma covers it."
+                                 : " Nothing is corrected; seen in one view alone it is taken not to shine at the card's own shots, and the scale's sigma leaves it out.";
+  return note + " Move or cover it.";
 }
 
 }  // namespace

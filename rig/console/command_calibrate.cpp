@@ -161,13 +161,17 @@ void describe_stray(const StrayLightSummary& light, std::ostream& text) {
   } else {
     text << "nobody knows how strongly";
   }
-  text << "; nothing is corrected, the scale's sigma covers it; move or cover it\n";
+  text << "; nothing is corrected, "
+       << (light.counted_in_scale ? "the scale's sigma covers it"
+                                  : "and seen in one view alone it is taken not to shine at the card's own shots: the scale's sigma leaves it out")
+       << "; move or cover it\n";
 }
 
 void describe_lamp_size(const LampSummary& lamp, std::ostream& text) {
   text << "lamp's radius: " << 1e3 * lamp.radius_m << " mm (" << lamp.radius_source << ")";
   if (lamp.highlights_radius_m) {
-    text << "; its highlights say " << 1e3 * *lamp.highlights_radius_m << " ± " << 1e3 * *lamp.highlights_radius_sigma_m << " mm\n";
+    text << "; its highlights say " << 1e3 * *lamp.highlights_radius_m << " ± " << 1e3 * *lamp.highlights_radius_sigma_m << " mm"
+         << (lamp.highlights_radius_found ? "\n" : ", but the search for it came to no end\n");
   } else if (lamp.highlights_radius_bound_m) {
     text << "; its highlights are a point's, up to " << 1e3 * *lamp.highlights_radius_bound_m << " mm at 95 %\n";
   } else {

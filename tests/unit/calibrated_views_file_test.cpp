@@ -39,7 +39,7 @@ TEST(CalibratedViewsFile, RoundTripsExactly) {
   summary.lamp.radius_source = "highlights";
   summary.lamp.highlights_radius_m = 0.051;
   summary.lamp.highlights_radius_sigma_m = 0.002;
-  summary.stray_lights.push_back({{"fit_000"}, false, {0.6, 0.0, 0.8}, 0.0, 0.69, 0.02});
+  summary.stray_lights.push_back({{"fit_000"}, false, {0.6, 0.0, 0.8}, 0.0, 0.69, 0.02, false});
   summary.hot_pixels = 5;
   write_calibrated_views(folder.path(), written, summary);
   const auto read = read_calibrated_views(folder.path());
@@ -66,6 +66,7 @@ TEST(CalibratedViewsFile, RoundTripsExactly) {
   EXPECT_FALSE(stray.placed);
   EXPECT_EQ(stray.position_in_rig, Eigen::Vector3d(0.6, 0.0, 0.8));
   EXPECT_EQ(stray.card_share, 0.69);
+  EXPECT_FALSE(stray.counted_in_scale);
   EXPECT_EQ(stray.card_share_sigma, 0.02);
 }
 

@@ -17,7 +17,8 @@ struct HighlightPixel {
   int sphere = 0;  // index along the line
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
   double sigma_px = 0.05;  // per axis
-  // Light in it, per colour of the mosaic (mono: three times the same): flux_of(fit) by the fit's balance. 0: not known.
+  // Light in it, per colour of the mosaic (mono: three times the same): flux_of(fit) by the fit's balance. 0: not known, as red
+  // and blue of a mosaic that was binned (read_sphere_highlights: spheres of 80 px radius and more), which is its green alone.
   std::array<double, 3> flux{};
 };
 

@@ -295,7 +295,7 @@ double LampPattern::sigma(const Eigen::Vector3d& direction) const {
   return factor(direction) * std::sqrt(std::max(0.0, g.dot(covariance_ * g.transpose())));
 }
 
-PatternFit fit_lamp_pattern(const std::vector<PatternSample>& samples) {
+PatternFit fit_lamp_pattern(const std::vector<PatternSample>& samples, std::optional<int> parameters) {
   const PatternProblem problem(usable(samples));
   if (problem.samples().empty()) return {};
   constexpr std::array<std::array<bool, 4>, 4> kSteps{
@@ -319,11 +319,27 @@ PatternFit fit_lamp_pattern(const std::vector<PatternSample>& samples) {
     start.converged = false;
     if (chosen < 2) start.p = k == 1 ? Parameters(rich.p[0], 0.0, 0.0, 0.0) : expanded_pattern(problem);
     const State candidate = problem.solve(kSteps[k], start, scale);
-    if (best.chi2 - candidate.chi2 < kLeastGain * scale * scale) continue;
+    const bool wanted = parameters ? std::count(kSteps[k].begin(), kSteps[k].end(), true) <= *parameters
+                                   : best.chi2 - candidate.chi2 >= kLeastGain * scale * scale;
+    if (!wanted) continue;
     best = candidate;
     chosen = k;
   }
   return summary_of(problem, best, kSteps[chosen]);
+}
+
+PatternFit fit_lamp_pattern(const std::vector<PatternSample>& samples, const std::vector<double>& stray_shares) {
+  PatternFit fit = fit_lamp_pattern(samples);
+  std::vector<PatternSample> freed = samples;
+  for (std::size_t i = 0; i < freed.size(); ++i) {
+    const double whole = 1.0 + stray_shares[i];
+    freed[i].radiance /= whole;
+    freed[i].variance /= whole * whole;
+  }
+  // With the same parameters: one that is just no longer significant would else be missing as a whole.
+  const Parameters off = fit_lamp_pattern(freed, fit.parameters).pattern.parameters() - fit.pattern.parameters();
+  fit.pattern = LampPattern(fit.pattern.parameters(), fit.pattern.covariance() + off * off.transpose());
+  return fit;
 }
 
 double irradiance_per_intensity(const LampPattern& pattern, const Eigen::Vector3d& position_in_lamp) {

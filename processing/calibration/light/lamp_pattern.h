@@ -11,6 +11,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <vector>
 
 namespace lumitexel {
@@ -60,8 +61,12 @@ struct PatternFit {
 };
 
 // Samples that face away from the lamp, lie behind it, or whose radiance is not positive are left out. Throws BadInput
-// for a negative view or a variance that is not positive and finite.
-PatternFit fit_lamp_pattern(const std::vector<PatternSample>& samples);
+// for a negative view or a variance that is not positive and finite. parameters (0, 1, 3 or 4): so many, whether needed or not.
+PatternFit fit_lamp_pattern(const std::vector<PatternSample>& samples, std::optional<int> parameters = {});
+
+// The same where stray lights add to the samples, one share (of the lamp's irradiance) a sample: strays stay in, and how far off the
+// same parameters are without them is in the covariance.
+PatternFit fit_lamp_pattern(const std::vector<PatternSample>& samples, const std::vector<double>& stray_shares);
 
 // Irradiance at normal incidence over the lamp's intensity along z, at a point: p(d) / distance^2.
 double irradiance_per_intensity(const LampPattern& pattern, const Eigen::Vector3d& position_in_lamp);

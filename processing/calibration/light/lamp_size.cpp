@@ -7,10 +7,13 @@
 #include <cmath>
 #include <limits>
 
+#include "processing/calibration/light/median.h"
+#include "processing/calibration/light/student_bound.h"
+
 namespace lumitexel {
 namespace {
 
-constexpr double kLeastSigmas = 3.0;  // with six spheres' scatter a point exceeds it in 1.5 % of the cases
+constexpr double kLeastSigmas = 3.0;
 constexpr double kProfileError = 0.01;  // of log width^2: a lamp's highlights lie elsewhere on the spheres than the ring's
 constexpr double kRingError = 0.005;  // of the ring flash's radius
 // Of a radius: twelve peaks stand for a disc, the worse the larger it is over the point's width (disc_part). Rendered discs are off by
@@ -19,12 +22,6 @@ constexpr double kModelError = 0.02, kModelErrorOfPart = 1.5;
 constexpr double kOneInTwenty = 1.645;
 constexpr int kLeastSpheres = 3;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Unit vector of t's plane across the plane of camera, sphere and highlight; along x where the highlight faces the camera.
 Eigen::Vector2d across_slope(const SphereInView& view, const Eigen::Vector2d& pixel) {
@@ -170,7 +167,8 @@ LampSize resolved_size(const Sizing& sizing, const SphereMean& at_zero, double s
   constexpr double kNearEnough = 0.3;  // of a sigma; the last secant comes much nearer
   constexpr double kLeastShare = 0.1;  // of the bracket, from either end
   constexpr double kLongestStride = 1.7;
-  for (int step = 0; step < kSteps; ++step) {
+  bool near = false;
+  for (int step = 0; step < kSteps && !near; ++step) {
     const SphereMean here = sizing.excess(std::sqrt(square));
     const bool known = here.spheres >= kLeastSpheres;
     const Point point{square, known ? std::expm1(here.mean) : -1.0};
@@ -182,14 +180,17 @@ LampSize resolved_size(const Sizing& sizing, const SphereMean& at_zero, double s
     const double next = known && from_low > 0.0 ? square + point.value / from_low : 0.5 * (low.square + square);
     (point.value > 0.0 ? low : high) = point;
     const double margin = high.square < most2 ? kLeastShare * (high.square - low.square) : 0.0;
-    const bool near = known && std::abs(next - square) * down < kNearEnough * sigma;
+    near = known && next < most2 && std::abs(next - square) * down < kNearEnough * sigma;
     // From below, in small strides: of a disc much too large the fits make what they like, a second zero too.
-    square = near ? next : std::clamp(next, low.square + margin, std::min(high.square - margin, kLongestStride * square));
-    if (near) break;
+    const double most = std::min(high.square - margin, kLongestStride * square);
+    square = near ? next : std::clamp(next, std::min(low.square + margin, most), most);
   }
   const double radius_m = std::sqrt(square);
   const double model = kModelError * std::max(1.0, kModelErrorOfPart * sizing.disc_part(radius_m)) * radius_m;
-  return {true, true, radius_m, std::hypot(model, sigma / down / (2.0 * radius_m)), 0.0};
+  const double stated = std::hypot(model, sigma / down / (2.0 * radius_m));
+  // Where it was not found, it may be anywhere in what is left of the bracket.
+  const double left = near ? 0.0 : std::max(radius_m - std::sqrt(low.square), std::sqrt(high.square) - radius_m);
+  return {true, true, near, radius_m, std::max(stated, left), 0.0};
 }
 
 }  // namespace
@@ -208,9 +209,12 @@ LampSize measure_lamp_size(const PointWidths& widths, const PictureOf& point, co
   size.measured = true;
   const double by_ring = fall * widths.ring_part * 2.0 * kRingError;
   const auto sigma_of = [&](const SphereMean& excess) { return std::hypot(excess.sigma, kProfileError, by_ring); };
-  const double sigma = sigma_of(at_zero);
-  if (at_zero.mean < kLeastSigmas * sigma) {
-    size.upper_m = std::min(lamp.most_m, std::sqrt((std::max(0.0, at_zero.mean) + kOneInTwenty * sigma) / slope));
+  // The scatter is that of so few spheres; the other errors are not.
+  const auto bound_of = [&](double z) {
+    return std::hypot(student_bound(at_zero.spheres - 1.0, z) * at_zero.sigma, z * kProfileError, z * by_ring);
+  };
+  if (at_zero.mean < bound_of(kLeastSigmas)) {
+    size.upper_m = std::min(lamp.most_m, std::sqrt((std::max(0.0, at_zero.mean) + bound_of(kOneInTwenty)) / slope));
     return size;
   }
   return resolved_size(sizing, at_zero, slope, lamp.most_m * lamp.most_m, sigma_of);

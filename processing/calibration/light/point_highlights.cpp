@@ -1,6 +1,9 @@
 #include "processing/calibration/light/point_highlights.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <set>
 
@@ -69,6 +72,29 @@ SeenInView without_close_rivals(const SeenInView& seen) {
   return result;
 }
 
+// What a disc of the lamp's size does not fit may be a point's, of another light.
+void fit_rest_as_points(const PictureOf& picture, const ShapeOf& as_point, std::vector<SeenInView>& all) {
+  tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t v) {
+    SeenInView rest;
+    std::copy_if(all[v].begin(), all[v].end(), std::back_inserter(rest), [](const SeenHighlight& seen) { return !seen.fit; });
+    if (rest.empty()) return;
+    fit_highlights(picture(v), v, std::nullopt, as_point, rest);
+    auto fitted = rest.begin();
+    for (SeenHighlight& seen : all[v]) {
+      if (!seen.fit) seen = *fitted++;
+    }
+  });
+}
+
+// Each with its own colours: a stray's are not the lamp's.
+void refit_strays_as_points(const PictureOf& picture, const ShapeOf& as_point, std::vector<std::vector<SeenInView>>& strays) {
+  tbb::parallel_for(std::size_t{0}, strays.size(), [&](std::size_t v) {
+    if (strays[v].empty()) return;
+    const MosaicRadiance image = picture(v);
+    for (SeenInView& stray : strays[v]) fit_highlights(image, v, std::nullopt, as_point, stray);
+  });
+}
+
 }  // namespace
 
 HighlightShape lamp_shape(const SphereInView& view, const Eigen::Vector3d& light, const EmitterDisc& lamp) {
@@ -123,14 +149,25 @@ PointHighlights read_point_highlights(const PictureOf& picture, const CameraMode
     }
     return seen;
   };
-  const std::vector<SeenInView> all = find_highlights(expected.positions.size(), picture, find, on_sphere, step);
+  // The disc's places hang on where the lamp stands; other lights stand elsewhere, and nothing says how large they are.
+  const ShapeOf as_point = [&](std::size_t, const SeenHighlight& highlight) {
+    return HighlightShape{.sphere = SphereInView{camera, line.sphere(highlight.sphere)}};
+  };
+  std::vector<SeenInView> all = find_highlights(expected.positions.size(), picture, find, on_sphere, step);
+  const bool disc = expected.lamp.radius_m > 0.0;
+  if (disc) fit_rest_as_points(picture, as_point, all);
   std::vector<SeenInView> own;
-  PointHighlights result;
+  std::vector<std::vector<SeenInView>> strays;
   for (std::size_t v = 0; v < all.size(); ++v) {
     SortedHighlights sorted = sort_highlights(camera, line, all[v], expected.positions[v], expected.reach_m);
     own.push_back(std::move(sorted.own));
-    std::vector<std::vector<HighlightPixel>>& strays = result.strays.emplace_back();
-    for (const SeenInView& stray : sorted.strays) strays.push_back(fitted(stray));
+    strays.push_back(std::move(sorted.strays));
+  }
+  if (disc) refit_strays_as_points(picture, as_point, strays);
+  PointHighlights result;
+  for (const std::vector<SeenInView>& view : strays) {
+    std::vector<std::vector<HighlightPixel>>& lights = result.strays.emplace_back();
+    for (const SeenInView& stray : view) lights.push_back(fitted(stray));
   }
   refit_highlights(picture, on_sphere, own);
   for (const SeenInView& view : own) result.own.push_back(fitted(view));

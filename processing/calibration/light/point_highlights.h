@@ -17,7 +17,7 @@ namespace lumitexel {
 struct PointHighlights {
   std::vector<std::vector<HighlightPixel>> own;                   // by view
   std::vector<SeenInView> seen;                                   // the same as they were found and fitted, those without a fit too
-  std::vector<std::vector<std::vector<HighlightPixel>>> strays;  // by view, then a light each; the own one is not among them
+  std::vector<std::vector<std::vector<HighlightPixel>>> strays;  // by view, then a light each, fitted as points; the own one is not among them
 };
 
 // What the rig's description says of the light, in the camera's frame.

@@ -8,14 +8,10 @@
 #include <limits>
 #include <optional>
 
+#include "processing/calibration/light/median.h"
+
 namespace lumitexel {
 namespace {
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 HighlightShape ring_shape(const SphereInView& view, double radius_m) {
   HighlightShape shape{.sphere = view};

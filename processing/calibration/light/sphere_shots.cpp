@@ -20,12 +20,13 @@ EmitterDisc lamp_of(const RigDescription& rig) {
 constexpr double kReachOfRadius = 0.25;
 constexpr double kMostOfRadius = 0.2;  // a lamp's: as the rig's file may have it
 
+// The file's, unless two sigmas contradict it.
 double lamp_radius_by(const LampSize& size, double in_file_m) {
   if (!size.measured) return in_file_m;
-  constexpr double kConfirmedSigmas = 2.0;
-  const bool confirmed = in_file_m > 0.0 && std::abs(in_file_m - size.radius_m) <= kConfirmedSigmas * size.sigma_m;
-  if (size.resolved) return confirmed ? in_file_m : size.radius_m;
-  return in_file_m <= size.upper_m ? in_file_m : 0.0;
+  constexpr double kSigmas = 2.0, kOneInTwenty = 1.645;
+  if (size.resolved) return std::abs(in_file_m - size.radius_m) <= kSigmas * size.sigma_m ? in_file_m : size.radius_m;
+  // The bound goes with the square root of its sigmas, at most: g(0) itself may be above zero.
+  return in_file_m <= std::sqrt(kSigmas / kOneInTwenty) * size.upper_m ? in_file_m : 0.0;
 }
 
 // Highlights are looked for and fitted at the scale that all of this is made for, spheres of 40 to 80 px radius: a highlight is a share of
@@ -37,12 +38,14 @@ int block_of(const CameraModel& camera, const RigDescription& rig) {
   return std::max(1, 2 * static_cast<int>(radius_px / (2.0 * kLeastRadiusPx)));
 }
 
-// In the pixels of the picture itself.
-void scale(std::vector<HighlightPixel>& highlights, int block) {
+// In the pixels of the picture itself. Blocks of a mosaic of colours are its green alone.
+void scale(std::vector<HighlightPixel>& highlights, int block, Mosaic mosaic) {
+  const bool green_alone = block > 1 && mosaic != Mosaic::Mono;
   for (HighlightPixel& highlight : highlights) {
     highlight.pixel *= block;
     highlight.sigma_px *= block;
     for (double& flux : highlight.flux) flux *= block * block;
+    if (green_alone) highlight.flux[0] = highlight.flux[2] = 0.0;
   }
 }
 
@@ -87,10 +90,11 @@ SphereHighlights read_sphere_highlights(const RadianceReader& reader, const std:
     if (std::abs(radius_m - expected.lamp.radius_m) <= size.sigma_m) break;
     expected.lamp.radius_m = radius_m;
   }
-  scale(seen.rings, block);
-  for (std::vector<HighlightPixel>& view : seen.points) scale(view, block);
+  const Mosaic mosaic = rig.camera.limits.mosaic;
+  scale(seen.rings, block, mosaic);
+  for (std::vector<HighlightPixel>& view : seen.points) scale(view, block, mosaic);
   for (auto& view : seen.strays) {
-    for (std::vector<HighlightPixel>& stray : view) scale(stray, block);
+    for (std::vector<HighlightPixel>& stray : view) scale(stray, block, mosaic);
   }
   return seen;
 }

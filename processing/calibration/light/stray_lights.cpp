@@ -7,23 +7,31 @@
 namespace lumitexel {
 namespace {
 
+Eigen::Vector3d direction_of(const StrayLight& light, const Eigen::Vector3d& spheres) {
+  return light.placed ? (light.position - spheres).normalized() : light.position;
+}
+
 // All views share the sphere line's error, and so lie nearer to one another than these covariances say: a light that moved by
 // less than a few centimetres at a metre may pass for one that stood.
-bool stands_there(const StrayLight& light, const StrayLight& seen) {
+bool stands_there(const StrayLight& light, const StrayLight& seen, const Eigen::Vector3d& spheres) {
   constexpr double kChiSquare3At999 = 16.27;
   constexpr double kSameDirection = 0.03;  // rad; directions of far lights are good to a tenth of that
-  if (light.placed != seen.placed) return false;
+  if (!light.placed || !seen.placed) return (direction_of(seen, spheres) - direction_of(light, spheres)).norm() < kSameDirection;
   const Eigen::Vector3d between = seen.position - light.position;
-  if (!light.placed) return between.norm() < kSameDirection;
   return between.dot((light.covariance + seen.covariance).inverse() * between) < kChiSquare3At999;
 }
 
+// A place is kept: a view that tells the direction alone adds nothing to it.
 void merge(StrayLight& light, const StrayLight& seen) {
-  if (light.placed) {
+  if (light.placed && seen.placed) {
     const Eigen::Matrix3d had = light.covariance.inverse(), more = seen.covariance.inverse();
     light.covariance = (had + more).inverse();
     light.position = light.covariance * (had * light.position + more * seen.position);
-  } else {
+  } else if (seen.placed) {
+    light.position = seen.position;
+    light.covariance = seen.covariance;
+    light.placed = true;
+  } else if (!light.placed) {
     light.position = (static_cast<double>(light.views.size()) * light.position + seen.position).normalized();
   }
   light.views.insert(light.views.end(), seen.views.begin(), seen.views.end());
@@ -55,6 +63,8 @@ std::vector<StrayLight> locate_stray_lights(const SphereHighlights& seen, const 
   std::vector<StrayLight> lights;
   if (all.empty()) return lights;
   const LightSolution solution = solve_lights(camera, seen.line, rig.ring_flash.radius_m, seen.rings, all);
+  const SphereLine& line = solution.line;
+  const Eigen::Vector3d spheres = 0.5 * (line.sphere(0).centre + line.sphere(line.count - 1).centre);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const MeasuredLight& measured = solution.lights[i];
     StrayLight light{{view_of[i]}, measured.position, measured.covariance, measured.measured, all[i]};
@@ -65,7 +75,7 @@ std::vector<StrayLight> locate_stray_lights(const SphereHighlights& seen, const 
       light.covariance.setZero();
     }
     const auto known = std::find_if(lights.begin(), lights.end(), [&](const StrayLight& other) {
-      return other.views.back() != view_of[i] && stands_there(other, light);
+      return other.views.back() != view_of[i] && stands_there(other, light, spheres);
     });
     if (known == lights.end()) {
       lights.push_back(std::move(light));

@@ -17,8 +17,8 @@ struct StrayLight {
   std::vector<HighlightPixel> highlights;   // of all its views
 };
 
-// From the strays among the spheres' highlights, each view solved on its own; those that stand in one place (or direction) in
-// several views are one. In the order of the first view that shows them.
+// From the strays among the spheres' highlights, each view solved on its own; those that stand in one place in several views are one;
+// where a view tells the direction alone, those in one direction from the spheres. In the order of the first view that shows them.
 std::vector<StrayLight> locate_stray_lights(const SphereHighlights& seen, const CameraModel& camera,
                                             const RigDescription& rig);
 

@@ -129,5 +129,32 @@ TEST(LampFrame, LooksAtThePivotUpright) {
   EXPECT_BAD_INPUT(lamp_from_rig({0.1, 0.0, 1.0}, {0.1, 0.0, 0.0}, Eigen::Vector3d::UnitZ()), "lamp frame");
 }
 
+// A stray that adds the same share everywhere leaves the pattern's shape alone, however weak the pattern is, down to where it is hardly
+// significant: nothing may be in the covariance for it.
+TEST(LampPatternUnderStrays, IsAsSureWhereTheyAddTheSameShareEverywhere) {
+  for (int step = 1; step <= 40; ++step) {
+    const double n = 0.005 * step;
+    const std::vector<PatternSample> samples = board_views([n](const Eigen::Vector3d& d) { return std::pow(d.z(), n); }, 7);
+    const PatternFit without = fit_lamp_pattern(samples), with = fit_lamp_pattern(samples, std::vector<double>(samples.size(), 0.5));
+    EXPECT_EQ(with.parameters, without.parameters);
+    EXPECT_EQ(with.pattern.parameters(), without.pattern.parameters());
+    const Eigen::Matrix4d more = with.pattern.covariance() - without.pattern.covariance();
+    EXPECT_LE(more.norm(), 1e-6 * without.pattern.covariance().norm()) << n;
+  }
+}
+
+// Falling off to the lamp's side it looks like a narrower lamp: the covariance reaches the exponent without it.
+TEST(LampPatternUnderStrays, HoldsHowFarOffTheyMayHaveMadeIt) {
+  std::vector<PatternSample> samples = board_views(cosine_2, 7);
+  std::vector<double> shares;
+  for (PatternSample& sample : samples) {
+    shares.push_back(0.5 * std::pow(sample.position_in_lamp.normalized().z(), 4.0));
+    sample.radiance *= 1.0 + shares.back();
+  }
+  const LampPattern pattern = fit_lamp_pattern(samples, shares).pattern;
+  EXPECT_GT(pattern.parameters()[0], 2.3);
+  EXPECT_LT(std::abs(pattern.parameters()[0] - 2.0), 2.0 * std::sqrt(pattern.covariance()(0, 0)));
+}
+
 }  // namespace
 }  // namespace lumitexel

@@ -37,10 +37,10 @@ Eigen::Vector3d lamp_place(std::uint64_t seed) {
   return kPivot + away.normalized();
 }
 
-LampSize size_of(const RoughSpheres& spheres, const PointWidths& widths, double radius_m, std::uint64_t seed) {
+LampSize size_of(const RoughSpheres& spheres, const PointWidths& widths, double radius_m, std::uint64_t seed, double most_m = 0.2) {
   const Eigen::Vector3d light = lamp_place(seed);
   const MosaicRadiance picture = with_noise(picture_of(spheres, disc_of_emitters(light, kPivot, radius_m), kPeak), 1000 + seed);
-  LampHighlights lamp{{{}}, {light}, kPivot, 0.2};
+  LampHighlights lamp{{{}}, {light}, kPivot, most_m};
   for (int k = 0; k < spheres.line.count; ++k) {
     const Eigen::Vector2d pixel = highlight_pixel(spheres.camera, spheres.line.sphere(k), light);
     lamp.seen[0].push_back({k, {pixel, kPeak}, std::nullopt});
@@ -58,6 +58,7 @@ TEST(LampSize, OfAPointIsCalledAPoint) {
       const LampSize size = size_of(spheres, widths, 0.0, seed);
       EXPECT_TRUE(size.measured) << seed;
       points += !size.resolved;
+      if (size.resolved) continue;  // counted above
       EXPECT_EQ(size.radius_m, 0.0) << seed;
       EXPECT_LT(size.upper_m, 0.02) << seed;
       EXPECT_GT(size.upper_m, 0.003) << seed;
@@ -73,7 +74,7 @@ TEST(LampSize, OfADiscIsFoundWithinItsSigma) {
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     const RoughSpheres spheres = seed % 2 == 0 ? bench() : bench(0.012, 0.8);
     const LampSize size = size_of(spheres, widths_of(spheres, seed), 0.05, seed);
-    EXPECT_TRUE(size.resolved) << seed;
+    EXPECT_TRUE(size.resolved && size.found) << seed;
     EXPECT_LT(size.sigma_m, 0.002) << seed;
     chi2 += std::pow((size.radius_m - 0.05) / size.sigma_m, 2);
   }
@@ -85,6 +86,14 @@ TEST(LampSize, OfADiscAsWideAsItsHighlightsIsStillFound) {
   EXPECT_TRUE(size.resolved);
   EXPECT_NEAR(size.radius_m, 0.1, 2.0 * size.sigma_m);
   EXPECT_LT(size.sigma_m, 0.01);
+}
+
+// No lamp is said to be larger than 3 cm, but this one is.
+TEST(LampSize, OfADiscBeyondTheLargestIsNotFound) {
+  const LampSize size = size_of(bench(), widths_of(bench(), 1), 0.05, 1, 0.03);
+  EXPECT_TRUE(size.resolved);
+  EXPECT_FALSE(size.found);
+  EXPECT_LE(size.radius_m, 0.03);
 }
 
 TEST(LampSize, IsNotMeasuredWhereTooFewSpheresShowIt) {

@@ -95,6 +95,8 @@ TEST(SessionStrays, OneOfASingleViewCountsThereAndUnderALampNearIt) {
   EXPECT_GT(strays.shares(kCard, session.lamp(1), 1)[0], 0.1);
   EXPECT_GT(strays.shares(kCard, session.lamp(1) + Eigen::Vector3d(0.01, 0.01, 0.0))[0], 0.1);
   EXPECT_EQ(strays.shares(kCard, session.lamp(0))[0], 0.0);
+  EXPECT_TRUE(strays.summarise({"a", "b", "c", "d"}, kCard, session.lamp(1))[0].counted_in_scale);
+  EXPECT_FALSE(strays.summarise({"a", "b", "c", "d"}, kCard, session.lamp(0))[0].counted_in_scale);
 }
 
 // Its distance the spheres cannot tell, its irradiance they can: the same on card and spheres.
@@ -119,6 +121,26 @@ TEST(SessionStrays, OneOfUnknownStrengthCountsAsMuchAsTheLamp) {
   const SessionStrays strays = session.strays();
   EXPECT_EQ(strays.shares(kCard, session.lamp(0), 0), std::vector<double>(3, 1.0));
   EXPECT_FALSE(strays.summarise({"a", "b", "c", "d"}, kCard, session.lamp(0))[0].card_share);
+}
+
+// At a metre in one view, where the other cannot tell its distance: one light, which stands, with its place.
+TEST(SessionStrays, OneThatIsPlacedInSomeViewsOnlyIsOne) {
+  const SphereLine line = StraySession({}).bench().spheres.line;
+  const Eigen::Vector3d middle = 0.5 * (line.sphere(0).centre + line.sphere(5).centre), far = middle + 400.0 * (kStray - middle);
+  for (const auto& [first, second] : {std::pair{kStray, far}, std::pair{far, kStray}}) {
+    const StraySession session({{0, first}, {2, second}});
+    const std::vector<StrayLightSummary> found = session.strays().summarise({"a", "b", "c", "d"}, kCard, session.lamp(0));
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_TRUE(found[0].placed);
+    EXPECT_EQ(found[0].views.size(), 2u);
+    EXPECT_LT((found[0].position_in_rig - kStray).norm(), 0.05);
+  }
+}
+
+TEST(SessionStrays, OnACardThatFacesAwayFromTheLampIsNotKnown) {
+  const StraySession session({{0, kStray}, {2, kStray}});
+  const LitPlace away{kCard.position, Eigen::Vector3d::UnitZ()};
+  EXPECT_EQ(session.strays().shares(away, session.lamp(0), 0), std::vector<double>(3, 1.0));
 }
 
 TimedReading reading_at(double time_s, const Eigen::Vector3d& lamp, double intensity, double share) {
