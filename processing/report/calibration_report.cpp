@@ -126,9 +126,9 @@ std::string stray_note(const StrayLightSummary& light) {
   if (light.placed) note += ", sigma " + html::number(1e3 * light.sigma_m) + " mm";
   note += ", on the spheres of " + std::to_string(light.views.size()) + " views: it is in their photographs too, and on the gray card, ";
   note += light.card_share ? "with " + html::number(100.0 * *light.card_share) + " ± " + html::number(100.0 * *light.card_share_sigma, 2) +
-                                 " % of the lamp's light if nothing shades it."
+                                 " % of the lamp's light there (the channel with most of it) if nothing shades it."
                            : std::string("nobody knows how strongly.");
-  note += light.counted_in_scale ? " Nothing is corrected; the scale's sigma covers it."
+  note += light.counted_in_scale ? " Nothing is corrected: intensities may be too high by about as much, which the scale's sigma covers."
                                  : " Nothing is corrected; seen in one view alone it is taken not to shine at the card's own shots, and the scale's sigma leaves it out.";
   return note + " Move or cover it.";
 }

@@ -157,12 +157,12 @@ void describe_stray(const StrayLightSummary& light, std::ostream& text) {
   for (const std::string& view : light.views) text << ' ' << view;
   text << ": it is in these photographs too, and on the gray card, ";
   if (light.card_share) {
-    text << "with " << 100.0 * *light.card_share << " ± " << 100.0 * *light.card_share_sigma << " % of the lamp's light if nothing shades it";
+    text << "with " << 100.0 * *light.card_share << " ± " << 100.0 * *light.card_share_sigma << " % of the lamp's light there (the channel with most of it) if nothing shades it";
   } else {
     text << "nobody knows how strongly";
   }
   text << "; nothing is corrected, "
-       << (light.counted_in_scale ? "the scale's sigma covers it"
+       << (light.counted_in_scale ? "intensities may be too high by about as much, which the scale's sigma covers"
                                   : "and seen in one view alone it is taken not to shine at the card's own shots: the scale's sigma leaves it out")
        << "; move or cover it\n";
 }
