@@ -9,7 +9,7 @@
 
 namespace lumitexel {
 
-// Float: the kernels of evaluate_packed.h, with the errors stated there; faster where a texel has many samples.
+// Float: the kernels of evaluate_packed.h, with the errors stated there.
 enum class Precision { Double, Float };
 const char* to_string(Precision precision);  // "double", "float"
 

@@ -16,7 +16,8 @@ struct BasesChoice {
 };
 
 // Either the material with its variations (kVariations of material_basis.h), or all of `basis`, if left-out samples of the members are then
-// predicted better by kLeastBasisGain and by two standard errors of the lumitexels' differences. The material alone is not asked: it is what a prior under which nothing varies makes of any basis.
+// predicted better by kLeastBasisGain and by two standard errors of the lumitexels' differences. The material alone is not asked: it is what a
+// prior under which nothing varies makes of any basis.
 BasesChoice choose_bases(const Observations& observations, const std::vector<std::size_t>& members, const std::vector<Brdf>& basis,
                          const ErrorModel& error, Precision precision);
 

@@ -12,8 +12,9 @@
 
 namespace lumitexel {
 
-// Mixtures learnt from the same lumitexels, judged by `lumitexels`, the most cautious first: the index of the one to keep. A later one takes an earlier one's
-// place only if it predicts left-out samples (left_out_error.h) better by half a percent and by more than twice the paired difference's standard error, and none
+// Mixtures learnt from the same lumitexels, judged by `lumitexels`, the most cautious first: the index of the one to keep. A later one
+// takes an earlier one's place only if it predicts left-out samples (left_out_error.h) better by half a percent and by more than twice the
+// paired difference's standard error, and none
 // of the two kinds of error is larger by as much: to be wrong about it costs little one way, a model without its highlights the other.
 std::size_t best_predictor(const std::vector<const Mixture*>& mixtures, const Observations& observations,
                            const LumitexelList& lumitexels);

@@ -8,7 +8,7 @@
 
 namespace lumitexel {
 
-inline constexpr std::size_t kVariations = 2;
+inline constexpr std::size_t kVariations = 2;  // of itself among a material's bases, behind itself
 
 // For each material: first itself, then two variations of itself (more and less diffuse light, with a sharper and a
 // broader lobe), then up to five others: those that border on it most (neighbour_counts[a][b]: pairs of adjacent texels of

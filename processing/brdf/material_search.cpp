@@ -14,9 +14,9 @@ namespace lumitexel {
 namespace {
 
 constexpr int kSearchRounds = 24, kRefitRounds = 8;  // of expectation-maximisation
-constexpr double kSearchSettled = 1e-4;             // of log likelihood a sample and round
-constexpr std::size_t kMostJudges = 20'000;         // lumitexels: a tenth of a second for each candidate and material
-constexpr int kMostExtra = 8;                       // materials beyond those wanted that splitting may make
+constexpr double kSearchSettled = 1e-4;              // of log likelihood a sample and round
+constexpr std::size_t kMostJudges = 20'000;         // lumitexels: as many as a draft's materials are learnt from, ten times over
+constexpr int kMostExtra = 8;                        // materials beyond those wanted that splitting may make
 
 // While materials are told apart they all have a lobe: what a matte whole hides, a part may show.
 MaterialSearch search_with(ErrorSource errors, const Observations& observations, const LumitexelList& selection,

@@ -13,8 +13,8 @@ struct MaterialSearch {
   Mixture mixture;
 };
 
-// First, with lobes of options.fit.family and, but for LobeShapes::Separate, one shape for all channels: splits into more materials than wanted (split_materials.h), lets the mixture settle, merges (merge_materials.h). Auto: with the given
-// error model and with estimated ones. Where there is more than one candidate, materials known before among them, error_choice.h decides.
+// First, with lobes of options.fit.family and, but for LobeShapes::Separate, one shape for all channels: splits into more materials than
+// wanted (split_materials.h), lets the mixture settle, merges (merge_materials.h). Auto: with the given error model and with estimated ones. Where there is more than one candidate, materials known before among them, error_choice.h decides.
 // Then, where options ask for it, the same materials are fitted with lobes of each other family, and with a shape for each channel;
 // error_choice.h decides again. Materials known before keep theirs.
 // report: as of cluster_materials.

@@ -9,12 +9,13 @@ constexpr int kGreen = 1;
 
 }  // namespace
 
-MosaicRadiance binned(const MosaicRadiance& image, int block) {
+MosaicRadiance binned(MosaicRadiance image, int block) {
   if (block == 1) return image;
   const bool odd = block % 2 != 0 && image.mosaic != Mosaic::Mono;
   if (block < 1 || odd || image.width < block || image.height < block) throw std::invalid_argument("binned: no such blocks in this mosaic");
-  MosaicRadiance result = image;
-  result.mosaic = Mosaic::Mono;
+  MosaicRadiance result;
+  result.darks_drifted = image.darks_drifted;
+  result.dark_scale = image.dark_scale;
   result.width = image.width / block;
   result.height = image.height / block;
   const std::size_t pixels = static_cast<std::size_t>(result.width) * static_cast<std::size_t>(result.height);

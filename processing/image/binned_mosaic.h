@@ -10,6 +10,6 @@ namespace lumitexel {
 // blue lie on either side, and by their difference would shift what is seen, by a fiftieth of a block under common lamps.
 // block: at least 1, and even for a mosaic of colours (std::invalid_argument otherwise, and where no block fits). Rows and columns that fill
 // no block are cut off. 1: the image itself.
-MosaicRadiance binned(const MosaicRadiance& image, int block);
+MosaicRadiance binned(MosaicRadiance image, int block);
 
 }  // namespace lumitexel
