@@ -28,7 +28,7 @@ namespace lumitexel {
 namespace {
 
 // Part of the key: change it with anything that changes what a calibration gives.
-constexpr const char* kMethod = "captured calibration 8";
+constexpr const char* kMethod = "captured calibration 9";
 // Room for the mask about the mesh's picture: a coarse mesh's error, and that of a pose that nobody measured.
 constexpr int kRegisteredMargin_px = 4, kNominalMargin_px = 8;
 

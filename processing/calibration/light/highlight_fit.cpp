@@ -49,10 +49,10 @@ ShapePrior shape_prior(const std::optional<double>& exponent) {
 // following the centre. In the picture's plane u = (x, y, 1); on a sphere u is the normal.
 class Domain {
  public:
-  explicit Domain(const HighlightShape& shape) : sphere_(shape.sphere), offsets_px_(shape.offsets_px) {
-    if (offsets_px_.empty()) offsets_px_.emplace_back(0.0, 0.0);
+  explicit Domain(const HighlightShape& shape) : sphere_(shape.sphere), peaks_(shape.peaks) {
+    if (peaks_.empty()) peaks_.emplace_back();
   }
-  const std::vector<Eigen::Vector2d>& offsets_px() const { return offsets_px_; }
+  const std::vector<HighlightPeak>& peaks() const { return peaks_; }
 
   struct Place {
     Eigen::Vector3d u;
@@ -88,7 +88,7 @@ class Domain {
 
  private:
   std::optional<SphereInView> sphere_;
-  std::vector<Eigen::Vector2d> offsets_px_;
+  std::vector<HighlightPeak> peaks_;
 };
 
 class PeakModel {
@@ -174,13 +174,13 @@ class PeakModel {
     for (std::size_t i = 0; i < kPlaces; ++i) {
       const Domain::Place& place = places_[sample * kPlaces + i];
       const Eigen::Vector2d from_centre = rows * place.u;
-      for (const Eigen::Vector2d& offset : domain_.offsets_px()) {
-        const Eigen::Vector2d t = from_centre - offset;
+      for (const HighlightPeak& peak : domain_.peaks()) {
+        const Eigen::Vector2d t = from_centre - peak.offset_px;
         const double a = p[2] * t.x(), b = p[3] * t.x() + p[4] * t.y();
-        sum += place.weight * std::pow(1.0 + (a * a + b * b) / exponent, -exponent);
+        sum += peak.share * place.weight * std::pow(1.0 + (a * a + b * b) / exponent, -exponent);
       }
     }
-    return sum / static_cast<double>(kPlaces * domain_.offsets_px().size());
+    return sum / static_cast<double>(kPlaces);
   }
 
   std::optional<ColourBalance> balance_;

@@ -12,8 +12,8 @@
 // its distance from the sphere's, always inwards, which over six spheres adds up to millimetres of the light's
 // distance. It holds for spheres whose roughness, not the lens's blur, makes the width.
 //
-// Several emitters whose reflections run into one (a ring flash, a lamp of some size) are fitted as that many equal peaks at
-// known offsets.
+// Several emitters whose reflections run into one (a ring flash, a lamp of some size) are fitted as that many peaks of known offsets and
+// shares: the nearer one is the brighter one, which moves their centroid by a share of the ring's image.
 #pragma once
 
 #include <Eigen/Core>
@@ -48,15 +48,19 @@ struct SphereInView {
   MirrorSphere sphere;  // in the camera's frame
 };
 
+struct HighlightPeak {
+  Eigen::Vector2d offset_px = Eigen::Vector2d::Zero();  // from the centre, in t's plane
+  double share = 1;                                     // of the whole highlight's light; all shares sum to 1
+};
+
 struct HighlightShape {
   std::optional<SphereInView> sphere;  // symmetric on this sphere; none: in the picture's plane
-  std::vector<Eigen::Vector2d>
-      offsets_px{};  // of equal peaks about the centre, in t's plane; none: one peak
+  std::vector<HighlightPeak> peaks{};     // none: one, at the centre
   std::vector<Eigen::Vector2d> others_px{};  // other highlights; pixels nearer to one of them than to the start are left out
   std::optional<double> exponent{};          // b where it is known, between 1 and 16; none: fitted
 };
 
-// t of a normal on the sphere when the highlight's centre is at the pixel: what offsets_px wants there. None if the pixel is
+// t of a normal on the sphere when the highlight's centre is at the pixel: a peak's offset there. None if the pixel is
 // off the sphere.
 std::optional<Eigen::Vector2d> across_centre(const SphereInView& view, const Eigen::Vector2d& centre_px,
                                              const Eigen::Vector3d& normal);

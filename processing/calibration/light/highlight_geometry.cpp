@@ -68,24 +68,37 @@ Eigen::Vector2d highlight_pixel(const CameraModel& camera, const MirrorSphere& s
   return camera.project(mirror_point(sphere, Eigen::Vector3d::Zero(), light));
 }
 
-std::vector<Eigen::Vector2d> ring_highlight_pixels(const CameraModel& camera, const MirrorSphere& sphere,
-                                                   double ring_radius_m) {
-  // Opposite emitters cancel to first order; eight catch what is left, since the next terms are of fourth order.
+std::vector<EmitterImage> emitter_images(const CameraModel& camera, const MirrorSphere& sphere, const std::vector<Eigen::Vector3d>& emitters) {
+  std::vector<EmitterImage> images;
+  double sum = 0.0;
+  for (const Eigen::Vector3d& emitter : emitters) {
+    const Eigen::Vector3d point = mirror_point(sphere, Eigen::Vector3d::Zero(), emitter);
+    images.push_back({camera.project(point), 1.0 / (emitter - point).squaredNorm()});
+    sum += images.back().share;
+  }
+  for (EmitterImage& image : images) image.share /= sum;
+  return images;
+}
+
+Eigen::Vector2d centroid(const std::vector<EmitterImage>& images) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const EmitterImage& image : images) sum += image.share * image.pixel;
+  return sum;
+}
+
+std::vector<EmitterImage> ring_images(const CameraModel& camera, const MirrorSphere& sphere, double ring_radius_m) {
+  // Opposite emitters cancel to first order, but for their distances; eight catch what is left, since the next terms are of fourth order.
   constexpr int kEmitters = 8;
-  std::vector<Eigen::Vector2d> pixels;
+  std::vector<Eigen::Vector3d> emitters;
   for (int i = 0; i < kEmitters; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / kEmitters;
-    pixels.push_back(
-        highlight_pixel(camera, sphere, {ring_radius_m * std::cos(angle), ring_radius_m * std::sin(angle), 0.0}));
+    emitters.emplace_back(ring_radius_m * std::cos(angle), ring_radius_m * std::sin(angle), 0.0);
   }
-  return pixels;
+  return emitter_images(camera, sphere, emitters);
 }
 
 Eigen::Vector2d ring_highlight_pixel(const CameraModel& camera, const MirrorSphere& sphere, double ring_radius_m) {
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  const std::vector<Eigen::Vector2d> pixels = ring_highlight_pixels(camera, sphere, ring_radius_m);
-  for (const Eigen::Vector2d& pixel : pixels) sum += pixel;
-  return sum / static_cast<double>(pixels.size());
+  return centroid(ring_images(camera, sphere, ring_radius_m));
 }
 
 std::vector<Eigen::Vector3d> places_on_disc(const Eigen::Vector3d& light, const EmitterDisc& emitter) {
@@ -109,12 +122,12 @@ Eigen::Vector2d disc_highlight_pixel(const CameraModel& camera, const MirrorSphe
   const Eigen::Vector3d across = normal.unitOrthogonal(), other = normal.cross(across);
   constexpr int kPlaces = 8;  // as for the ring flash
   const double radius = emitter.radius_m / std::numbers::sqrt2;
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  std::vector<Eigen::Vector3d> places;
   for (int i = 0; i < kPlaces; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / kPlaces;
-    sum += highlight_pixel(camera, sphere, light + radius * (std::cos(angle) * across + std::sin(angle) * other));
+    places.push_back(light + radius * (std::cos(angle) * across + std::sin(angle) * other));
   }
-  return sum / kPlaces;
+  return centroid(emitter_images(camera, sphere, places));
 }
 
 }  // namespace lumitexel

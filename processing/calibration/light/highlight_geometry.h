@@ -33,9 +33,17 @@ std::optional<Eigen::Vector3d> light_from_highlights(const CameraModel& camera, 
 
 // Pixel at which the camera sees `light` mirrored in the sphere.
 Eigen::Vector2d highlight_pixel(const CameraModel& camera, const MirrorSphere& sphere, const Eigen::Vector3d& light);
-// Pixels at which it sees emitters that stand evenly around the lens in the camera's xy plane.
-std::vector<Eigen::Vector2d> ring_highlight_pixels(const CameraModel& camera, const MirrorSphere& sphere,
-                                                   double ring_radius_m);
+// One of several emitters alike: where it is seen mirrored, and its share of their light, which falls with its distance from there
+// squared. Shares sum to 1.
+struct EmitterImage {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  double share = 0;
+};
+std::vector<EmitterImage> emitter_images(const CameraModel& camera, const MirrorSphere& sphere, const std::vector<Eigen::Vector3d>& emitters);
+Eigen::Vector2d centroid(const std::vector<EmitterImage>& images);
+
+// Of emitters that stand evenly around the lens in the camera's xy plane.
+std::vector<EmitterImage> ring_images(const CameraModel& camera, const MirrorSphere& sphere, double ring_radius_m);
 // Their centroid: that of the reflection of a ring of the given radius.
 Eigen::Vector2d ring_highlight_pixel(const CameraModel& camera, const MirrorSphere& sphere, double ring_radius_m);
 

@@ -100,7 +100,7 @@ class Sizing {
     for (const std::size_t v : views_) {
       for (const SeenHighlight& highlight : lamp_.seen[v]) {
         const SphereInView view = view_of(highlight);
-        const double part = mean_square_along(across_slope(view, highlight.blob.pixel), shape_of(v, highlight, radius_m).offsets_px) /
+        const double part = mean_square_along(across_slope(view, highlight.blob.pixel), shape_of(v, highlight, radius_m).peaks) /
                             std::exp(width_of(highlight));
         if (!std::isfinite(part)) continue;
         sum += part;
@@ -118,7 +118,7 @@ class Sizing {
         const double change = log_ratio(i, highlight, 0.0) - log_ratio(i, highlight, radius_m);
         if (!std::isfinite(change)) continue;
         fall += change;
-        part += mean_square_along(across_slope(view_of(highlight), highlight.blob.pixel), shape_of(views_[i], highlight, radius_m).offsets_px) /
+        part += mean_square_along(across_slope(view_of(highlight), highlight.blob.pixel), shape_of(views_[i], highlight, radius_m).peaks) /
                 std::exp(width_of(highlight));
         break;
       }

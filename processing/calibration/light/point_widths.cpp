@@ -16,11 +16,11 @@ namespace {
 HighlightShape ring_shape(const SphereInView& view, double radius_m) {
   HighlightShape shape{.sphere = view};
   const Eigen::Vector2d centre = ring_highlight_pixel(view.camera, view.sphere, radius_m);
-  for (const Eigen::Vector2d& pixel : ring_highlight_pixels(view.camera, view.sphere, radius_m)) {
-    const auto mirrored = mirrored_ray(view.sphere, {Eigen::Vector3d::Zero(), view.camera.unproject(pixel)});
+  for (const EmitterImage& image : ring_images(view.camera, view.sphere, radius_m)) {
+    const auto mirrored = mirrored_ray(view.sphere, {Eigen::Vector3d::Zero(), view.camera.unproject(image.pixel)});
     if (!mirrored) continue;
     const auto offset = across_centre(view, centre, (mirrored->origin - view.sphere.centre).normalized());
-    if (offset) shape.offsets_px.push_back(*offset);
+    if (offset) shape.peaks.push_back({*offset, image.share});
   }
   return shape;
 }
@@ -56,10 +56,10 @@ std::vector<std::size_t> spread_views(std::size_t views, const std::function<boo
   return chosen;
 }
 
-double mean_square_along(const Eigen::Vector2d& u, const std::vector<Eigen::Vector2d>& offsets) {
+double mean_square_along(const Eigen::Vector2d& u, const std::vector<HighlightPeak>& peaks) {
   double sum = 0.0;
-  for (const Eigen::Vector2d& offset : offsets) sum += offset.dot(u) * offset.dot(u);
-  return offsets.empty() ? 0.0 : sum / static_cast<double>(offsets.size());
+  for (const HighlightPeak& peak : peaks) sum += peak.share * std::pow(peak.offset_px.dot(u), 2);
+  return sum;
 }
 
 PointWidths measure_point_widths(std::size_t views, const PictureOf& ring, const CameraModel& camera, const SphereLine& line,
@@ -84,8 +84,8 @@ PointWidths measure_point_widths(std::size_t views, const PictureOf& ring, const
     }
     if (logs.empty()) continue;
     widths.log_square[static_cast<std::size_t>(k)] = median(logs);
-    const std::vector<Eigen::Vector2d> offsets = ring_shape(view, ring_radius_m).offsets_px;
-    const double square = 0.5 * (mean_square_along(Eigen::Vector2d::UnitX(), offsets) + mean_square_along(Eigen::Vector2d::UnitY(), offsets));
+    const std::vector<HighlightPeak> peaks = ring_shape(view, ring_radius_m).peaks;
+    const double square = 0.5 * (mean_square_along(Eigen::Vector2d::UnitX(), peaks) + mean_square_along(Eigen::Vector2d::UnitY(), peaks));
     widths.ring_part += square / std::exp(widths.log_square[static_cast<std::size_t>(k)]) / line.count;
   }
   return widths;

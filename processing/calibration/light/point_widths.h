@@ -23,6 +23,6 @@ PointWidths measure_point_widths(std::size_t views, const PictureOf& ring, const
 std::vector<std::size_t> spread_views(std::size_t views, const std::function<bool(std::size_t)>& usable);
 
 // Of places in t's plane, along the unit vector u. 0 without any.
-double mean_square_along(const Eigen::Vector2d& u, const std::vector<Eigen::Vector2d>& offsets);
+double mean_square_along(const Eigen::Vector2d& u, const std::vector<HighlightPeak>& peaks);
 
 }  // namespace lumitexel

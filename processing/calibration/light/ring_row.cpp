@@ -197,8 +197,8 @@ RingRow read_ring_row(std::size_t views, const PictureOf& picture, const CameraM
     HighlightShape shape;
     const MirrorSphere sphere = line.sphere(highlight.sphere);
     const Eigen::Vector2d centre = ring_highlight_pixel(camera, sphere, rig.ring_flash.radius_m);
-    for (const Eigen::Vector2d& pixel : ring_highlight_pixels(camera, sphere, rig.ring_flash.radius_m)) {
-      shape.offsets_px.push_back(pixel - centre);
+    for (const EmitterImage& image : ring_images(camera, sphere, rig.ring_flash.radius_m)) {
+      shape.peaks.push_back({image.pixel - centre, image.share});
     }
     return shape;
   };

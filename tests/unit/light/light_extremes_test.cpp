@@ -199,15 +199,17 @@ TEST(EmitterDisc, IsSeenAtItsReflectionsCentroid) {
   const Eigen::Vector3d light(0.15, -0.3, 0.8);
   const Eigen::Vector3d normal = (disc.faces - light).normalized(), a = normal.unitOrthogonal(), b = normal.cross(a);
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  int count = 0;
+  double all = 0.0;
   for (double u = -0.975; u < 1.0; u += 0.05) {
     for (double v = -0.975; v < 1.0; v += 0.05) {
       if (u * u + v * v > 1.0) continue;
-      sum += highlight_pixel(rig.camera, rig.line.sphere(3), light + disc.radius_m * (u * a + v * b));
-      ++count;
+      const Eigen::Vector3d place = light + disc.radius_m * (u * a + v * b);
+      const double share = 1.0 / (mirror_point(rig.line.sphere(3), Eigen::Vector3d::Zero(), place) - place).squaredNorm();
+      sum += share * highlight_pixel(rig.camera, rig.line.sphere(3), place);
+      all += share;
     }
   }
-  const Eigen::Vector2d truth = sum / count;
+  const Eigen::Vector2d truth = sum / all;
   const double as_a_point = (highlight_pixel(rig.camera, rig.line.sphere(3), light) - truth).norm();
   EXPECT_GT(as_a_point, 0.03);  // a disc of 5 cm at 40 cm is no point
   EXPECT_LT((disc_highlight_pixel(rig.camera, rig.line.sphere(3), light, disc) - truth).norm(), 0.05 * as_a_point);

@@ -128,11 +128,15 @@ const Observed& exact_highlights() {
     Observed o;
     for (int k = 0; k < 6; ++k) {
       Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+      double light = 0.0;
       for (int e = 0; e < 64; ++e) {
         const double angle = 2.0 * M_PI * e / 64.0;
-        sum += true_pixel(test_line().sphere(k), {kRing_m * std::cos(angle), kRing_m * std::sin(angle), 0.0});
+        const Eigen::Vector3d emitter(kRing_m * std::cos(angle), kRing_m * std::sin(angle), 0.0);
+        const double share = 1.0 / (shortest_way_point(test_line().sphere(k), Eigen::Vector3d::Zero(), emitter) - emitter).squaredNorm();
+        sum += share * true_pixel(test_line().sphere(k), emitter);
+        light += share;
       }
-      o.rings.push_back({k, sum / 64.0, 0.05});
+      o.rings.push_back({k, sum / light, 0.05});
     }
     for (const Eigen::Vector3d& light : kLights) {
       o.points.emplace_back();
