@@ -43,7 +43,7 @@ void make_paths_absolute(toml::table& rig, const fs::path& folder) {
   const auto absolute = [&](const char* table, const char* key) {
     toml::value<std::string>* path = rig[table][key].as_string();
     const bool names_a_file = path != nullptr && !(std::string(key) == "object" && path->get() == "vase");
-    if (names_a_file) *path = (fs::absolute(folder) / path->get()).lexically_normal().string();
+    if (names_a_file) *path = (folder / path->get()).lexically_normal().string();
   };
   absolute("simulation", "object");
   absolute("recorded", "session");
@@ -56,7 +56,7 @@ toml::table with_bases(const fs::path& file, std::vector<fs::path> seen) {
   }
   seen.push_back(whole);
   toml::table over = parsed(read_whole_file(file), file);
-  make_paths_absolute(over, file.parent_path());
+  make_paths_absolute(over, fs::absolute(file).parent_path());
   if (!over.contains("base")) return over;
   const toml::value<std::string>* base = over["base"].as_string();
   if (base == nullptr) throw BadInput(file.string() + ": base", "no text", "a rig's file, relative to this one");

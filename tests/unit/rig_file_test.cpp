@@ -26,6 +26,16 @@ TEST_F(RigFileTest, WithoutABaseItIsTheFileByteForByte) {
   EXPECT_EQ(read_rig_file(write("a.toml", text)), text);
 }
 
+// A folder that is not named is the current one.
+TEST_F(RigFileTest, PathsAreRelativeToAFileNamedWithoutItsFolder) {
+  write("a.toml", "name = \"a\"\n");
+  write("b.toml", "base = \"a.toml\"\n[recorded]\nsession = \"S\"\n");
+  std::filesystem::current_path(folder_.path());
+  const std::string merged = read_rig_file("b.toml");
+  std::filesystem::current_path("/");
+  EXPECT_NE(merged.find((std::filesystem::canonical(folder_.path()) / "S").string()), std::string::npos) << merged;
+}
+
 TEST_F(RigFileTest, KeysLieOverTheBasesAndTheRestStays) {
   write("a.toml", "name = \"a\"\n[camera]\nbits = 12\nreadout_s = 0.5\n[ring_flash]\nradius_m = 0.04\n");
   write("b.toml", "base = \"a.toml\"\nname = \"b\"\n[camera]\nbits = 14\n");
