@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "processing/brdf/choose_noise_shape.h"
 #include "processing/brdf/material_search.h"
 
 namespace lumitexel {
@@ -39,6 +40,14 @@ void set_shares(const Responsibilities& r, Mixture& mixture) {
     for (std::size_t k = 0; k < r.materials; ++k) mixture.share[k] += r.at(l, k) / static_cast<double>(r.lumitexels());
   }
   for (double& share : mixture.share) share = std::max(share, 1e-300);  // its logarithm is taken
+}
+
+// Where errors end abruptly, lumitexels are told apart by that, and the materials settle anew.
+void settle_with_edges(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels, const MaterialFitOptions& fit,
+                       Responsibilities& r) {
+  mixture.noise = choose_noise_shape(mixture, observations, lumitexels, r);
+  if (mixture.noise.normal()) return;
+  r = maximise_expectation(mixture, observations, lumitexels, fit, {kFinalRounds, kFinalSettled, false});
 }
 
 }  // namespace
@@ -93,6 +102,7 @@ Clustering cluster_materials(const Observations& observations, const LumitexelLi
   const std::vector<int> label = most_probable(responsibilities(mixture, observations, all));
   const LumitexelList finalists = members_of_all(label, all, mixture.materials.size(), options.final_lumitexels);
   r = maximise_expectation(mixture, observations, finalists, settled, {kFinalRounds, kFinalSettled});
+  if (settled.estimate_error) settle_with_edges(mixture, observations, finalists, settled, r);
   choose_lobes(mixture, observations, finalists, r, settled, fits);
   // What all is measured against: the best mean prediction, whatever the materials were fitted by.
   MaterialFitOptions mean = settled;

@@ -12,11 +12,19 @@
 
 namespace lumitexel {
 
-// Mixtures learnt from the same lumitexels, judged by `lumitexels`, the most cautious first: the index of the one to keep. A later one
-// takes an earlier one's place only if it predicts left-out samples (left_out_error.h) better by half a percent and by more than twice the
-// paired difference's standard error, and none
-// of the two kinds of error is larger by as much: to be wrong about it costs little one way, a model without its highlights the other.
-std::size_t best_predictor(const std::vector<const Mixture*>& mixtures, const Observations& observations,
-                           const LumitexelList& lumitexels);
+// What a mixture has to show against the best one before it. All by left-out samples (left_out_error.h), in the sum of the two kinds of
+// error, each a share of the earlier one's; SE: the paired difference's standard error over lumitexels.
+enum class Claim {
+  Better,    // a gain of over 2 SE, and no loss of as much in either kind: to be wrong about it costs little one way, a model without its
+             // highlights the other
+  Richer,    // that, and half a percent of gain: richer models differ from poorer ones by chance, and surely, since every sample errs a little less
+  Efficient  // no loss in either kind of over two percent, or, by 2 SE, of over half a percent. For fits by estimated errors: where they predict as well, they
+             // are the more exact ones. A hundredth of the samples, outliers, may make up most of an error, so that no gain would show
+};
+
+// Of mixtures learnt from the same lumitexels, judged by `lumitexels`, the most cautious first: the index of the one to keep. A later one
+// takes an earlier one's place where the claim holds.
+std::size_t best_predictor(const std::vector<const Mixture*>& mixtures, const Observations& observations, const LumitexelList& lumitexels,
+                           Claim claim);
 
 }  // namespace lumitexel

@@ -69,16 +69,6 @@ MaterialSearch adapted(const Clustering& before, const Observations& observation
   return search;
 }
 
-// From nothing; the most cautious first.
-std::vector<MaterialSearch> found_anew(const Observations& observations, const LumitexelList& selection, const ClusterOptions& options,
-                                       const std::function<void(int)>& report) {
-  const auto search = [&](ErrorSource errors) { return search_with(errors, observations, selection, options, report); };
-  if (options.errors == ErrorSource::Given || options.errors == ErrorSource::Estimated) return {search(options.errors)};
-  MaterialSearch estimated = search(ErrorSource::Estimated), labels = with_mean_fits(estimated, observations, selection, options);
-  if (options.errors == ErrorSource::Labels) return {std::move(labels)};
-  return {search(ErrorSource::Given), std::move(labels), std::move(estimated)};
-}
-
 // Who have not learnt; where too few are left, the learners themselves.
 LumitexelList judges(const Observations& observations, const LumitexelList& selection) {
   const LumitexelList usable = with_samples(observations, kFewestSamples);
@@ -87,11 +77,21 @@ LumitexelList judges(const Observations& observations, const LumitexelList& sele
   return others.size() < selection.size() ? selection : thinned(others, kMostJudges);
 }
 
-MaterialSearch best_of(std::vector<MaterialSearch> searches, const Observations& observations, const LumitexelList& selection) {
+MaterialSearch best_of(std::vector<MaterialSearch> searches, const Observations& observations, const LumitexelList& selection, Claim claim) {
   if (searches.size() == 1) return std::move(searches.front());
   std::vector<const Mixture*> mixtures;
   for (const MaterialSearch& search : searches) mixtures.push_back(&search.mixture);
-  return std::move(searches[best_predictor(mixtures, observations, judges(observations, selection))]);
+  return std::move(searches[best_predictor(mixtures, observations, judges(observations, selection), claim)]);
+}
+
+// From nothing; the most cautious first.
+std::vector<MaterialSearch> found_anew(const Observations& observations, const LumitexelList& selection, const ClusterOptions& options,
+                                       const std::function<void(int)>& report) {
+  const auto search = [&](ErrorSource errors) { return search_with(errors, observations, selection, options, report); };
+  if (options.errors == ErrorSource::Given || options.errors == ErrorSource::Estimated) return {search(options.errors)};
+  MaterialSearch estimated = search(ErrorSource::Estimated), labels = with_mean_fits(estimated, observations, selection, options);
+  if (options.errors == ErrorSource::Labels) return {std::move(labels)};
+  return {search(ErrorSource::Given), best_of({std::move(labels), std::move(estimated)}, observations, selection, Claim::Efficient)};
 }
 
 MaterialSearch with_family(MaterialSearch search, BrdfFamily family, const Observations& observations, const LumitexelList& selection) {
@@ -115,12 +115,12 @@ MaterialSearch with_lobes_asked_for(MaterialSearch search, const Observations& o
     for (const BrdfFamily family : {BrdfFamily::Lafortune, BrdfFamily::Ggx, BrdfFamily::Ward}) {
       if (family != families.front().fit.family) families.push_back(with_family(families.front(), family, observations, selection));
     }
-    search = best_of(std::move(families), observations, selection);
+    search = best_of(std::move(families), observations, selection, Claim::Richer);
   }
   if (options.lobe_shapes == LobeShapes::Auto && search.fit.shared_shape && observations.channels > 1) {
     std::vector<MaterialSearch> shapes{std::move(search)};
     shapes.push_back(with_separate_shapes(shapes.front(), observations, selection));
-    search = best_of(std::move(shapes), observations, selection);
+    search = best_of(std::move(shapes), observations, selection, Claim::Richer);
   }
   return search;
 }
@@ -147,7 +147,7 @@ MaterialSearch search_for_materials(const Observations& observations, const Lumi
   if (searches.empty() || options.before.anew) {
     for (MaterialSearch& search : found_anew(observations, selection, options, report)) searches.push_back(std::move(search));
   }
-  MaterialSearch best = best_of(std::move(searches), observations, selection);
+  MaterialSearch best = best_of(std::move(searches), observations, selection, Claim::Better);
   const bool known = options.before.clustering != nullptr && !options.before.anew;
   return known ? best : with_lobes_asked_for(std::move(best), observations, selection, options);
 }

@@ -40,7 +40,7 @@ bool maximise(Mixture& mixture, const Observations& observations, const Lumitexe
     if (members[k] < std::min(kFewestMembers, most)) return;
     mixture.materials[k] = maximised(mixture.materials[k], samples_of(observations, lumitexels, r, k), options, ask_for_tails);
   });
-  Mixture kept;
+  Mixture kept{{}, {}, mixture.noise};
   for (std::size_t k = 0; k < members.size(); ++k) {
     if (members[k] < std::min(kFewestMembers, most)) continue;
     kept.materials.push_back(mixture.materials[k]);
@@ -62,6 +62,23 @@ double normalise(double* log_probability, std::size_t count) {
   return most + std::log(sum);
 }
 
+template <typename Misfit>
+Responsibilities responsibilities_by(const std::vector<Misfit>& materials, const Mixture& mixture, const Observations& observations,
+                                     const LumitexelList& lumitexels) {
+  const std::size_t count = materials.size();
+  Responsibilities r{count, std::vector<double>(lumitexels.size() * count), std::vector<double>(lumitexels.size() * count), 0.0};
+  r.log_likelihood = ordered_sum(lumitexels.size(), 0.0, [&](std::size_t l, double& sum) {
+    double* log_probability = &r.probability[l * count];
+    for (std::size_t k = 0; k < count; ++k) {
+      const double value = materials[k].of(observations.of(lumitexels[l]));
+      r.misfit[l * count + k] = value;
+      log_probability[k] = std::log(mixture.share[k]) - 0.5 * value;
+    }
+    sum += normalise(log_probability, count);
+  });
+  return r;
+}
+
 }  // namespace
 
 LumitexelList thinned(const LumitexelList& list, std::size_t most) {
@@ -80,20 +97,14 @@ LumitexelList with_samples(const Observations& observations, std::size_t fewest)
 }
 
 Responsibilities responsibilities(const Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels) {
-  const std::size_t count = mixture.materials.size();
-  Responsibilities r{count, std::vector<double>(lumitexels.size() * count), std::vector<double>(lumitexels.size() * count), 0.0};
-  std::vector<PreparedMisfit> materials;
-  for (const MaterialModel& material : mixture.materials) materials.emplace_back(material.brdf, material.error);
-  r.log_likelihood = ordered_sum(lumitexels.size(), 0.0, [&](std::size_t l, double& sum) {
-    double* log_probability = &r.probability[l * count];
-    for (std::size_t k = 0; k < count; ++k) {
-      const double value = materials[k].of(observations.of(lumitexels[l]));
-      r.misfit[l * count + k] = value;
-      log_probability[k] = std::log(mixture.share[k]) - 0.5 * value;
-    }
-    sum += normalise(log_probability, count);
-  });
-  return r;
+  if (mixture.noise.normal()) {
+    std::vector<PreparedMisfit> materials;
+    for (const MaterialModel& material : mixture.materials) materials.emplace_back(material.brdf, material.error);
+    return responsibilities_by(materials, mixture, observations, lumitexels);
+  }
+  std::vector<ShapedMisfit> materials;
+  for (const MaterialModel& material : mixture.materials) materials.emplace_back(material.brdf, material.error, mixture.noise);
+  return responsibilities_by(materials, mixture, observations, lumitexels);
 }
 
 std::vector<FitSample> samples_of(const Observations& observations, const LumitexelList& lumitexels, const Responsibilities& r,

@@ -6,12 +6,14 @@
 #include <vector>
 
 #include "processing/brdf/fit_material.h"
+#include "processing/brdf/noise_shape.h"
 
 namespace lumitexel {
 
 struct Mixture {
   std::vector<MaterialModel> materials;
   std::vector<double> share;  // of lumitexels, summing to 1
+  NoiseShape noise = {};      // of all materials' errors; only whose a lumitexel is goes by it
 };
 
 // Lumitexel l of a list belongs to material k with probability at(l, k).

@@ -9,12 +9,12 @@
 namespace lumitexel {
 namespace {
 
-FiveMaterialsScore score_of_fit(const FiveMaterials& world) {
+FiveMaterialsScore score_of_fit(const FiveMaterials& world, ErrorSource errors) {
   LumitexelList all(world.label.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   ClusterOptions cluster;
   cluster.materials = 5;
-  cluster.errors = ErrorSource::Estimated;
+  cluster.errors = errors;
   cluster.final_lumitexels = all.size();
   return score(world, cluster_materials(world.observations, all, cluster, [](int) {}));
 }
@@ -51,18 +51,19 @@ TEST(FiveMaterials, TheTrueLawOfTheNoiseLabelsBetterThanANormalOne) {
 TEST(FiveMaterials, OutliersAreAsWellBorneAsTheirAbsence) {
   FiveMaterialsOptions options;
   options.outliers = 0.02;
-  const FiveMaterialsScore result = score_of_fit(make_five_materials(1, options));
+  const FiveMaterialsScore result = score_of_fit(make_five_materials(1, options), ErrorSource::Auto);
   ASSERT_TRUE(result.all_found);
-  // Mean squares of five and fifteen errors over the bound's: below 3 and 2.1 for 99 of 100 seeds at the bound. Student's tails gave 7.3.
+  // Mean squares of five and fifteen errors over the bound's: below 3 and 2.1 for 99 of 100 seeds at the bound. Student's tails gave 7.3, best
+  // mean predictions, which outliers pull up by a percent, 700.
   EXPECT_LT(result.squared_exponent, 3.0);
   EXPECT_LT(result.squared_diffuse, 2.2);
-  EXPECT_GT(result.accuracy, result.normal_accuracy - 0.01);
+  EXPECT_GT(result.accuracy, result.bayes_accuracy - 0.008);  // the goal is 0.5 % in the mean over seeds
 }
 
 TEST(FiveMaterials, ASmallExperimentFindsAllFive) {
   FiveMaterialsOptions options;
   options.lumitexels = 1200;
-  const FiveMaterialsScore result = score_of_fit(make_five_materials(2, options));
+  const FiveMaterialsScore result = score_of_fit(make_five_materials(2, options), ErrorSource::Estimated);
   EXPECT_TRUE(result.all_found);
   EXPECT_LT(result.worst_exponent, 0.01);  // the bound is some 0.2 % for each of the five
 }
