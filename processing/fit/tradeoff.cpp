@@ -9,27 +9,32 @@
 #include "processing/fit/coarser_session.h"
 #include "processing/fit/fit_model.h"
 #include "processing/fit/thinned_session.h"
+#include "processing/fit/tradeoff_journal.h"
 
 namespace lumitexel {
 namespace {
 
-// The stages that one setting reports become hundredths of one long stage, so that rate and time left are those of the whole.
+constexpr std::int64_t kWhole_percent = 100;
+
+// The stages that one setting reports become a part of one long stage, so that rate and time left are those of the whole.
 class SettingProgress final : public Progress {
  public:
-  SettingProgress(Progress& whole, std::size_t before, int stages)
-      : whole_(whole), start_(100 * static_cast<std::int64_t>(before)), stages_(stages) {}
+  SettingProgress(Progress& whole, std::size_t before, std::size_t settings, int stages)
+      : whole_(whole), before_(static_cast<double>(before)), settings_(static_cast<double>(settings)), stages_(stages) {}
   void begin(const std::string&, std::int64_t total, const std::string&) override {
     ++stage_;
     total_ = std::max<std::int64_t>(1, total);
     update(0);
   }
   void update(std::int64_t done) override {
-    whole_.update(start_ + std::min<std::int64_t>(99, (100 * (stage_ - 1) + 100 * done / total_) / stages_));
+    const double share = (static_cast<double>(stage_ - 1) + static_cast<double>(done) / static_cast<double>(total_)) / stages_;
+    whole_.update(static_cast<std::int64_t>(static_cast<double>(kWhole_percent) * (before_ + std::min(1.0, share)) / settings_));
   }
 
  private:
   Progress& whole_;
-  std::int64_t start_, total_ = 1, stage_ = 0;
+  double before_, settings_;
+  std::int64_t total_ = 1, stage_ = 0;
   int stages_;
 };
 
@@ -79,13 +84,14 @@ CalibratedSession heldout_part(const CalibratedSession& session) {
   return part;
 }
 
-void fit_and_judge(const CalibratedSession& session, const CalibratedSession& heldout, Progress& progress,
-                   TradeoffMeasurement& measurement) {
-  const TradeoffSetting& setting = measurement.setting;
+TradeoffMeasurement measured(const CalibratedSession& session, const CalibratedSession& heldout, const TradeoffSetting& setting,
+                             Progress& progress) {
+  TradeoffMeasurement measurement;
+  measurement.setting = setting;
   const std::size_t views = setting.fit_views == 0 ? fit_views(session) : setting.fit_views;
   if (views > fit_views(session)) {
     measurement.failure = "the session has " + std::to_string(fit_views(session)) + " photographs to fit";
-    return;
+    return measurement;
   }
   measurement.fit_views = views;
   try {
@@ -104,13 +110,14 @@ void fit_and_judge(const CalibratedSession& session, const CalibratedSession& he
   } catch (const Error& error) {
     measurement.failure = error.what();
   }
+  return measurement;
 }
 
 bool comparable(const TradeoffMeasurement& m) { return m.measured() && std::isfinite(m.clipped.value); }
 
 bool dominates(const TradeoffMeasurement& a, const TradeoffMeasurement& b) {
-  return a.seconds <= b.seconds && a.clipped.value <= b.clipped.value &&
-         (a.seconds < b.seconds || a.clipped.value < b.clipped.value);
+  return a.cpu_seconds <= b.cpu_seconds && a.clipped.value <= b.clipped.value &&
+         (a.cpu_seconds < b.cpu_seconds || a.clipped.value < b.clipped.value);
 }
 
 }  // namespace
@@ -127,7 +134,7 @@ ErrorWithSpread mean_with_spread(const std::vector<double>& values) {
   return result;
 }
 
-Tradeoff measure_tradeoff(const CalibratedSession& session, const std::vector<TradeoffSetting>& settings, Progress& progress) {
+Tradeoff measure_tradeoff(const CalibratedSession& session, const std::vector<TradeoffSetting>& settings, TradeoffJournal* journal, Progress& progress) {
   Tradeoff tradeoff;
   tradeoff.session_key = session.key;
   tradeoff.fit_views = fit_views(session);
@@ -137,15 +144,14 @@ Tradeoff measure_tradeoff(const CalibratedSession& session, const std::vector<Tr
                    "some views with split = \"heldout\" in the capture plan, or heldout in column split of lights.csv before importing");
   }
   const CalibratedSession heldout = heldout_part(session);
-  const auto steps = 100 * static_cast<std::int64_t>(settings.size());
-  progress.begin("fits and comparisons", steps, "hundredths of a fit");
+  progress.begin("fits and comparisons", kWhole_percent, "%");
   for (const TradeoffSetting& setting : settings) {
-    SettingProgress part(progress, tradeoff.measurements.size(), stages_of(setting.options));
-    TradeoffMeasurement measurement;
-    measurement.setting = setting;
-    fit_and_judge(session, heldout, part, measurement);
-    tradeoff.measurements.push_back(std::move(measurement));
-    progress.update(100 * static_cast<std::int64_t>(tradeoff.measurements.size()));
+    const std::size_t before = tradeoff.measurements.size();
+    const std::optional<TradeoffMeasurement> known = journal != nullptr ? journal->known(setting) : std::nullopt;
+    SettingProgress part(progress, before, settings.size(), stages_of(setting.options));
+    tradeoff.measurements.push_back(known ? *known : measured(session, heldout, setting, part));
+    if (journal != nullptr && !known) journal->keep(tradeoff.measurements.back());
+    progress.update(kWhole_percent * static_cast<std::int64_t>(before + 1) / static_cast<std::int64_t>(settings.size()));
   }
   return tradeoff;
 }
@@ -172,8 +178,8 @@ std::optional<TradeoffGain> gain_over_standard(const Tradeoff& tradeoff, const T
   }
   TradeoffGain gain;
   gain.gain = {standard->clipped.value - measurement.clipped.value, mean_with_spread(differences).sigma};
-  gain.more_seconds = measurement.seconds - standard->seconds;
-  if (std::abs(gain.more_seconds) > kSameTime * standard->seconds) gain.per_second = gain.gain.value / gain.more_seconds;
+  gain.more_cpu_seconds = measurement.cpu_seconds - standard->cpu_seconds;
+  if (std::abs(gain.more_cpu_seconds) > kSameTime * standard->cpu_seconds) gain.per_second = gain.gain.value / gain.more_cpu_seconds;
   return gain;
 }
 

@@ -1,18 +1,31 @@
+#include "processing/fit/tradeoff_json.h"
+
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "processing/fit/tradeoff.h"
 
 namespace lumitexel {
-namespace {
 
 using Json = nlohmann::ordered_json;
+
+namespace {
 
 Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json to_json(const ErrorWithSpread& error) { return {{"value", finite_or_null(error.value)}, {"sigma", finite_or_null(error.sigma)}}; }
 
-Json options_json(const TradeoffSetting& setting) {
+double number_or_nan(const Json& json) { return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>(); }
+
+ErrorWithSpread error_from(const Json& json) { return {number_or_nan(json.at("value")), number_or_nan(json.at("sigma"))}; }
+
+Json gain_json(const std::optional<TradeoffGain>& gain) {
+  if (!gain) return nullptr;
+  return {{"gain", to_json(gain->gain)}, {"more_cpu_seconds", gain->more_cpu_seconds}, {"gain_per_cpu_second", finite_or_null(gain->per_second)}};
+}
+
+}  // namespace
+
+Json setting_json(const TradeoffSetting& setting) {
   const FitOptions& options = setting.options;
   return {{"quality", options.quality},
           {"method", options.method == FitMethod::Paper ? "paper" : "lumitexel"},
@@ -20,17 +33,20 @@ Json options_json(const TradeoffSetting& setting) {
           {"lobe_shapes", to_string(options.lobe_shapes)},
           {"normals", to_string(options.normals)},
           {"interreflections", options.interreflections.wanted},
+          {"interreflection_rounds", options.interreflections.rounds},
+          {"errors", to_string(options.errors)},
           {"most_lobes", options.most_lobes},
           {"principal_functions", options.principal_functions},
           {"bases", options.bases == 0 ? Json("auto") : Json(options.bases)},
           {"precision", to_string(options.precision)},
           {"materials", options.materials},
+          {"views", setting.fit_views == 0 ? Json("all") : Json(setting.fit_views)},
           {"pixel_block", setting.pixel_block},
           {"learning_lumitexels", options.learning_lumitexels},
           {"final_lumitexels", options.final_lumitexels}};
 }
 
-Json measured_json(const TradeoffMeasurement& measurement) {
+Json measurement_json(const TradeoffMeasurement& measurement) {
   Json views = Json::array();
   for (const double error : measurement.clipped_by_view) views.push_back(finite_or_null(error));
   return {{"materials", measurement.materials},
@@ -45,21 +61,27 @@ Json measured_json(const TradeoffMeasurement& measurement) {
             {"clipped_rms_by_view", views}}}};
 }
 
-Json gain_json(const std::optional<TradeoffGain>& gain) {
-  if (!gain) return nullptr;
-  return {{"gain", to_json(gain->gain)}, {"more_seconds", gain->more_seconds}, {"gain_per_second", finite_or_null(gain->per_second)}};
+void measurement_from(const Json& json, TradeoffMeasurement& measurement) {
+  measurement.materials = json.at("materials").get<std::size_t>();
+  measurement.fit_views = json.at("fit_views").get<std::size_t>();
+  measurement.seconds = json.at("seconds").get<double>();
+  measurement.cpu_seconds = json.at("cpu_seconds").get<double>();
+  if (!json.at("peak_bytes").is_null()) measurement.peak_bytes = json.at("peak_bytes").get<std::int64_t>();
+  const Json& heldout = json.at("heldout");
+  measurement.relative = error_from(heldout.at("relative_rms"));
+  measurement.clipped = error_from(heldout.at("clipped_rms"));
+  measurement.square_root = error_from(heldout.at("sqrt_rms"));
+  for (const Json& error : heldout.at("clipped_rms_by_view")) measurement.clipped_by_view.push_back(number_or_nan(error));
 }
-
-}  // namespace
 
 std::string tradeoff_json(const Tradeoff& tradeoff) {
   const std::vector<bool> front = pareto_front(tradeoff.measurements);
   Json settings = Json::array();
   for (std::size_t i = 0; i < front.size(); ++i) {
     const TradeoffMeasurement& measurement = tradeoff.measurements[i];
-    Json entry = {{"name", measurement.setting.name}, {"what", measurement.setting.what}, {"options", options_json(measurement.setting)}};
+    Json entry = {{"name", measurement.setting.name}, {"what", measurement.setting.what}, {"options", setting_json(measurement.setting)}};
     entry["failure"] = measurement.measured() ? Json(nullptr) : Json(measurement.failure);
-    entry["measured"] = measurement.measured() ? measured_json(measurement) : Json(nullptr);
+    entry["measured"] = measurement.measured() ? measurement_json(measurement) : Json(nullptr);
     entry["pareto_front"] = static_cast<bool>(front[i]);
     entry["against_standard"] = gain_json(gain_over_standard(tradeoff, measurement));
     settings.push_back(entry);

@@ -27,14 +27,14 @@ std::string header(const std::string& session_name, const Tradeoff& tradeoff) {
   for (std::size_t i = 0; i < front.size(); ++i) {
     const TradeoffMeasurement& m = tradeoff.measurements[i];
     if (!front[i]) continue;
-    if (fastest == nullptr || m.seconds < fastest->seconds) fastest = &m;
+    if (fastest == nullptr || m.cpu_seconds < fastest->cpu_seconds) fastest = &m;
     if (best == nullptr || m.clipped.value < best->clipped.value) best = &m;
   }
   std::string text = "<header><h1>" + html::escaped(session_name) + ": speed against accuracy</h1>\n<p>This session was fitted with one setting "
                      "after another. Each model then predicted photographs that its fit never saw.</p>\n<div class=\"tiles\">";
   if (fastest != nullptr) {
-    text += tile(fastest->setting.name, "fastest: " + html::number(fastest->seconds) + " s, error " + html::number(fastest->clipped.value));
-    text += tile(best->setting.name, "most accurate: error " + html::number(best->clipped.value) + ", " + html::number(best->seconds) + " s");
+    text += tile(fastest->setting.name, "fastest: " + html::number(fastest->cpu_seconds) + " s of CPU time, error " + html::number(fastest->clipped.value));
+    text += tile(best->setting.name, "most accurate: error " + html::number(best->clipped.value) + ", " + html::number(best->cpu_seconds) + " s of CPU time");
   }
   text += tile(std::to_string(tradeoff.fit_views), "photographs to fit");
   text += tile(std::to_string(tradeoff.heldout_views), "photographs kept out, which judge");
@@ -43,9 +43,9 @@ std::string header(const std::string& session_name, const Tradeoff& tradeoff) {
 
 std::string plot_section(const Tradeoff& tradeoff) {
   const std::string plot = tradeoff_plot(tradeoff);
-  if (plot.empty()) return html::section("Error against time", "No setting could be measured.", "");
+  if (plot.empty()) return html::section("Error against CPU time", "No setting could be measured.", "");
   return html::section(
-      "Error against time",
+      "Error against CPU time",
       "Lower is better, further left is faster. The steps are the Pareto front: the best error that can be had within that time.",
       html::figure(plot, "Orange: on the front. Blue: another setting is both faster and better. Bars: one standard error over the held-out "
                          "photographs; they move together from setting to setting, so differences are surer than the bars say (next table)."));
@@ -62,9 +62,9 @@ std::string error_section(const Tradeoff& tradeoff) {
       continue;
     }
     rows.push_back({m.setting.name, front[i] ? "front" : "", with_spread(m.clipped), with_spread(m.relative), with_spread(m.square_root),
-                    html::number(m.seconds), html::number(m.cpu_seconds), memory(m.peak_bytes), std::to_string(m.materials), std::to_string(m.fit_views)});
+                    html::number(m.cpu_seconds), html::number(m.seconds), memory(m.peak_bytes), std::to_string(m.materials), std::to_string(m.fit_views)});
   }
-  std::string body = html::table({"setting", "", "clipped error", "relative", "square roots", "seconds", "CPU seconds", "peak MB", "materials", "views"}, rows);
+  std::string body = html::table({"setting", "", "clipped error", "relative", "square roots", "CPU seconds", "seconds", "peak MB", "materials", "views"}, rows);
   if (!failures.empty()) body += "<h3>Not measured</h3><ul>" + failures + "</ul>";
   return html::section("Each setting",
                        "RMS of rendering minus photograph over that of the photograph, over all held-out pixels; clipped: both at the photograph's "
@@ -77,23 +77,24 @@ std::string gain_section(const Tradeoff& tradeoff) {
   for (const TradeoffMeasurement& m : tradeoff.measurements) {
     const auto gain = gain_over_standard(tradeoff, m);
     if (!gain || m.setting.name == kStandardSetting) continue;
-    rows.push_back({m.setting.name, with_spread(gain->gain), html::number(gain->more_seconds), html::number(gain->per_second)});
+    rows.push_back({m.setting.name, with_spread(gain->gain), html::number(gain->more_cpu_seconds), html::number(gain->per_second)});
   }
   if (rows.empty()) return "";
   return html::section("Against the standard preset",
                        "Gain: standard's clipped error less this setting's; above 0, this setting is better. ± is the standard error of the "
-                       "differences on the same photographs: a gain within twice that may be chance. Per second: of a slower setting, what each "
+                       "differences on the same photographs: a gain within twice that may be chance. Per CPU second: of a slower setting, what each "
                        "second more buys; of a faster one, what each second saved costs; below 0, one of the two is both faster and better. An en "
                        "dash where the times differ by less than 5 %, as runs of one setting do.",
-                       html::table({"setting", "gain", "more seconds", "gain per second"}, rows));
+                       html::table({"setting", "gain", "more CPU seconds", "gain per CPU second"}, rows));
 }
 
 std::string meaning_section(const Tradeoff& tradeoff) {
   std::vector<std::vector<std::string>> rows;
   for (const TradeoffMeasurement& m : tradeoff.measurements) rows.push_back({m.setting.name, m.setting.what});
   return html::section("What the settings are",
-                       "All but the presets are the standard preset with one thing changed. Seconds are wall time of the fit alone, one run each "
-                       "on this machine as busy as it was (other programs make them longer, and CPU seconds, of all threads, hardly); calibration and comparison are not counted. Peak memory is the process's during that fit.",
+                       "All but the presets are the standard preset with something changed. CPU seconds are of all threads, of the fit alone, one run each; "
+                       "seconds are its wall time, on this machine as busy as it was. Calibration and comparison are not counted. Peak memory is "
+                       "the process's during that fit.",
                        html::table({"setting", "meaning"}, rows));
 }
 

@@ -21,7 +21,7 @@ struct Box {
 
 struct Point {
   std::string name;
-  double seconds, error, sigma;
+  double seconds, error, sigma;  // of CPU time
   bool front;
 };
 
@@ -46,8 +46,8 @@ std::vector<Point> points_of(const Tradeoff& tradeoff) {
   std::vector<Point> points;
   for (std::size_t i = 0; i < front.size(); ++i) {
     const TradeoffMeasurement& m = tradeoff.measurements[i];
-    if (!m.measured() || !std::isfinite(m.clipped.value) || m.seconds <= 0.0) continue;
-    points.push_back({m.setting.name, m.seconds, m.clipped.value, std::isfinite(m.clipped.sigma) ? m.clipped.sigma : 0.0, front[i]});
+    if (!m.measured() || !std::isfinite(m.clipped.value) || m.cpu_seconds <= 0.0) continue;
+    points.push_back({m.setting.name, m.cpu_seconds, m.clipped.value, std::isfinite(m.clipped.sigma) ? m.clipped.sigma : 0.0, front[i]});
   }
   return points;
 }
@@ -99,7 +99,7 @@ std::string grid(const Axes& axes) {
     svg += formatted("<path d=\"M%.1f %.0f V%.0f\" stroke=\"#d9dde2\"/><text x=\"%.1f\" y=\"%.0f\" text-anchor=\"middle\">%g</text>\n",
                      axes.x(seconds), kTop_px, kHeight_px - kBottom_px, axes.x(seconds), kHeight_px - kBottom_px + 18, seconds);
   }
-  svg += formatted("<text x=\"%.0f\" y=\"%.0f\" text-anchor=\"middle\">seconds of the fit (logarithmic)</text>", 0.5 * (kLeft_px + kWidth_px),
+  svg += formatted("<text x=\"%.0f\" y=\"%.0f\" text-anchor=\"middle\">CPU seconds of the fit (logarithmic)</text>", 0.5 * (kLeft_px + kWidth_px),
                    kHeight_px - 12);
   return svg + formatted("<text transform=\"translate(18 %.0f) rotate(-90)\" text-anchor=\"middle\">clipped error on held-out "
                          "photographs</text>\n",

@@ -3,13 +3,16 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "processing/calibration/calibrated_session.h"
 #include "processing/fit/tradeoff.h"
+#include "processing/fit/tradeoff_journal.h"
 #include "processing/report/tradeoff_page.h"
 #include "rig/console/command.h"
 #include "rig/console/input_folder.h"
 #include "rig/console/materials_option.h"
+#include "rig/sha256.h"
 #include "rig/whole_file.h"
 
 namespace lumitexel {
@@ -18,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct TradeoffArguments {
-  std::string session, page, materials = "4";
+  std::string session, page, keep, materials = "4";
   bool full = false;
   std::vector<std::string> only;
 };
@@ -51,21 +54,21 @@ std::string measurement_line(const Tradeoff& tradeoff, const TradeoffMeasurement
   if (!m.measured()) return name + "not measured: " + m.failure + "\n";
   const auto gain = m.setting.name == kStandardSetting ? std::nullopt : gain_over_standard(tradeoff, m);
   return name + formatted("%5zu %4zu  %s  %7.4f %7.4f  %8.1f %7.1f %s", m.fit_views, m.materials, error_cell(m.clipped).c_str(), m.relative.value,
-                          m.square_root.value, m.seconds, m.cpu_seconds, memory_cell(m.peak_bytes).c_str()) +
+                          m.square_root.value, m.cpu_seconds, m.seconds, memory_cell(m.peak_bytes).c_str()) +
          gain_cells(gain) + "\n";
 }
 
 std::string tradeoff_text(const Tradeoff& tradeoff) {
   std::string text = formatted("Errors on %zu photographs that no fit saw; %zu more for fitting\n", tradeoff.heldout_views, tradeoff.fit_views);
-  text += "                                 clipped error                                     CPU           gain over             gain\n"
-          "  setting            views mat.   +- over views    relative    sqrt   seconds seconds peak MB  standard             per s\n";
+  text += "                                 clipped error                           CPU                     gain over             gain\n"
+          "  setting            views mat.   +- over views    relative    sqrt   seconds seconds peak MB  standard         per CPU s\n";
   const std::vector<bool> front = pareto_front(tradeoff.measurements);
   for (std::size_t i = 0; i < front.size(); ++i) text += measurement_line(tradeoff, tradeoff.measurements[i], front[i]);
   return text +
          "* on the Pareto front: no setting is both faster and better by the clipped error. Gain: clipped error of standard less\n"
-         "this one's, +- over the same views. Per second: of a slower setting what a second more buys, of a faster one what a\n"
+         "this one's, +- over the same views. Per CPU second: of a slower setting what a second more buys, of a faster one what a\n"
          "second saved costs; below 0 one of the two is faster and better; - where times are within 5 %.\n"
-         "Seconds are wall time: other programs on this machine make them longer, and CPU seconds hardly.\n";
+         "CPU seconds: of all threads. Seconds: wall time, which other programs on this machine make longer.\n";
 }
 
 std::string session_name(const fs::path& session) {
@@ -93,11 +96,16 @@ std::string setting_names() {
   return names;
 }
 
+// Another program may measure otherwise.
+std::string program_sha256() { return sha256_hex(read_whole_file("/proc/self/exe")); }
+
 CommandResult tradeoff_command(const TradeoffArguments& arguments, CommandContext& context) {
   const auto settings = tradeoff_settings(materials_wanted("--materials", arguments.materials), arguments.full, arguments.only);
   const SessionStore store = session_given("SESSION", arguments.session);
   const CalibratedSession session = calibrate_session(store, context.progress);
-  const Tradeoff tradeoff = measure_tradeoff(session, settings, context.progress);
+  std::optional<TradeoffJournal> journal;
+  if (!arguments.keep.empty()) journal.emplace(arguments.keep, session.key + " by " + program_sha256());
+  const Tradeoff tradeoff = measure_tradeoff(session, settings, journal ? &*journal : nullptr, context.progress);
   const std::string json = tradeoff_json(tradeoff);
   CommandResult result;
   result.json = nlohmann::json::parse(json);
@@ -121,6 +129,7 @@ void add_tradeoff_command(CLI::App& app, CommandAction& action) {
   command->add_flag("--reference,--full", arguments->full, "Also the reference preset, which learns on every surface point and takes long");
   command->add_option("--only", arguments->only, "These settings only: " + setting_names())->delimiter(',')->type_name("NAME");
   command->footer(meanings(tradeoff_settings(4, true, {})));
+  command->add_option("--keep", arguments->keep, "File of measurements, added to as they come; those it has of this session, setting and program are not made again");
   command->add_option("--page", arguments->page, "HTML file to write, with a drawing of error against seconds");
   command->callback([arguments, &action] {
     action = [arguments](CommandContext& context) { return tradeoff_command(*arguments, context); };

@@ -47,7 +47,7 @@ TEST(Tradeoff, MeasuresEachSettingAndSaysWhyNotWhereItCannot) {
   settings.push_back(settings.front());
   settings.back().fit_views = 3;
   RecordedProgress progress;
-  const Tradeoff tradeoff = measure_tradeoff(small_session(folder), settings, progress);
+  const Tradeoff tradeoff = measure_tradeoff(small_session(folder), settings, nullptr, progress);
 
   EXPECT_EQ(tradeoff.fit_views, 4u);
   EXPECT_EQ(tradeoff.heldout_views, 2u);
@@ -79,7 +79,7 @@ TEST(Tradeoff, SaysWhatToDoWhereNothingIsHeldOut) {
   CalibratedSession session;
   session.views.resize(3);
   NoProgress progress;
-  EXPECT_BAD_INPUT(measure_tradeoff(session, tradeoff_settings(4, false, {}), progress), "held out", "split", "lights.csv");
+  EXPECT_BAD_INPUT(measure_tradeoff(session, tradeoff_settings(4, false, {}), nullptr, progress), "held out", "split", "lights.csv");
 }
 
 TEST(TradeoffSettings, AreTheNamedOnesAndTheReferenceOnlyIfAsked) {

@@ -1,0 +1,53 @@
+#include "processing/fit/tradeoff_journal.h"
+
+#include <utility>
+
+#include "drivers/error.h"
+#include "processing/fit/tradeoff_json.h"
+#include "rig/whole_file.h"
+
+namespace lumitexel {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kEntries = "tradeoff_measurements";
+
+Json entry_of(const std::string& key, const TradeoffSetting& setting) { return {{"of", key}, {"setting", setting_json(setting)}}; }
+
+}  // namespace
+
+TradeoffJournal::TradeoffJournal(std::filesystem::path file, std::string key) : file_(std::move(file)), key_(std::move(key)) {
+  if (!std::filesystem::exists(file_)) return;
+  const Json document = Json::parse(read_whole_file(file_), nullptr, false);
+  if (!document.is_object() || !document.contains(kEntries) || !document.at(kEntries).is_array()) {
+    throw BadInput(file_.string(), "a file of another kind", "one that an earlier tradeoff --keep wrote, or the name of a new one");
+  }
+  entries_ = document.at(kEntries);
+}
+
+std::optional<TradeoffMeasurement> TradeoffJournal::known(const TradeoffSetting& setting) const {
+  const Json wanted = entry_of(key_, setting);
+  for (const Json& entry : entries_) {
+    if (entry.value("of", Json()) != wanted.at("of") || entry.value("setting", Json()) != wanted.at("setting")) continue;
+    TradeoffMeasurement measurement;
+    measurement.setting = setting;
+    try {
+      measurement_from(entry.at("measured"), measurement);
+    } catch (const Json::exception& error) {
+      throw BadInput(file_.string(), error.what(), "measurements as tradeoff --keep writes them, or the name of a new file");
+    }
+    return measurement;
+  }
+  return std::nullopt;
+}
+
+void TradeoffJournal::keep(const TradeoffMeasurement& measurement) {
+  if (!measurement.measured()) return;
+  Json entry = entry_of(key_, measurement.setting);
+  entry["measured"] = measurement_json(measurement);
+  entries_.push_back(std::move(entry));
+  write_whole_file(file_, Json{{kEntries, entries_}}.dump(1) + "\n");
+}
+
+}  // namespace lumitexel

@@ -1,0 +1,28 @@
+// Measurements of a tradeoff kept in a file as they come, so that a run that was stopped goes on where it was.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "processing/fit/tradeoff.h"
+
+namespace lumitexel {
+
+class TradeoffJournal {
+ public:
+  // key: of session and program, whose measurements these are; those of others stay in the file and are not looked at. A file that is not
+  // there is an empty journal. Throws BadInput if it holds something else.
+  TradeoffJournal(std::filesystem::path file, std::string key);
+
+  std::optional<TradeoffMeasurement> known(const TradeoffSetting& setting) const;
+  void keep(const TradeoffMeasurement& measurement);  // measured ones only; throws Error where the file cannot be written
+
+ private:
+  std::filesystem::path file_;
+  std::string key_;
+  nlohmann::ordered_json entries_ = nlohmann::ordered_json::array();
+};
+
+}  // namespace lumitexel

@@ -1,0 +1,82 @@
+#include "processing/fit/tradeoff_journal.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "processing/fit/tradeoff_json.h"
+#include "tests/unit/bad_input_matcher.h"
+#include "tests/unit/temporary_folder.h"
+#include "tests/unit/tradeoff/made_measurements.h"
+
+namespace lumitexel {
+namespace {
+
+TradeoffMeasurement of_setting(const TradeoffSetting& setting, double cpu_seconds) {
+  TradeoffMeasurement measurement = made_measurement("", cpu_seconds, {0.1, 0.30000000000000004});
+  measurement.setting = setting;
+  measurement.materials = 3;
+  measurement.fit_views = 12;
+  measurement.relative.sigma = std::nan("");
+  return measurement;
+}
+
+TEST(TradeoffJournal, GivesBackWhatItWasGivenToTheLastBit) {
+  const TemporaryFolder folder;
+  const auto settings = tradeoff_settings(4, false, {"draft", "lobes-2"});
+  const TradeoffMeasurement first = of_setting(settings[0], 10.1), second = of_setting(settings[1], 1.0 / 3.0);
+  {
+    TradeoffJournal journal(folder.path() / "kept.json", "session and program");
+    EXPECT_FALSE(journal.known(settings[0]).has_value());
+    journal.keep(first);
+    journal.keep(second);
+  }
+  const TradeoffJournal journal(folder.path() / "kept.json", "session and program");
+  const auto known = journal.known(settings[1]);
+  ASSERT_TRUE(known.has_value());
+  EXPECT_EQ(measurement_json(*known), measurement_json(second));
+  EXPECT_EQ(known->setting.name, "lobes-2");
+  EXPECT_TRUE(std::isnan(known->relative.sigma));
+  EXPECT_EQ(measurement_json(*journal.known(settings[0])), measurement_json(first));
+}
+
+TEST(TradeoffJournal, KnowsNothingOfAnotherSessionProgramOrSetting) {
+  const TemporaryFolder folder;
+  TradeoffSetting setting = tradeoff_settings(4, false, {"draft"}).front();
+  TradeoffJournal journal(folder.path() / "kept.json", "a");
+  journal.keep(of_setting(setting, 1.0));
+  EXPECT_TRUE(journal.known(setting).has_value());
+  EXPECT_FALSE(TradeoffJournal(folder.path() / "kept.json", "b").known(setting).has_value());
+  setting.options.materials = 5;
+  EXPECT_FALSE(journal.known(setting).has_value());
+  setting.options.materials = 4;
+  setting.fit_views = 8;
+  EXPECT_FALSE(journal.known(setting).has_value());
+}
+
+TEST(TradeoffJournal, DoesNotKeepFailures) {
+  const TemporaryFolder folder;
+  TradeoffMeasurement failed = of_setting(tradeoff_settings(4, false, {"draft"}).front(), 1.0);
+  failed.failure = "no light";
+  TradeoffJournal journal(folder.path() / "kept.json", "a");
+  journal.keep(failed);
+  EXPECT_FALSE(journal.known(failed.setting).has_value());
+}
+
+TEST(TradeoffJournal, RefusesAFileOfAnotherKind) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "model.json") << "{\"materials\": 4}";
+  EXPECT_THROW(TradeoffJournal(folder.path() / "model.json", "a"), BadInput);
+}
+
+// Whatever a fit depends on has to be in the setting's JSON, or a journal takes one setting for another.
+TEST(TradeoffJournal, SettingsAllDiffer) {
+  const auto settings = tradeoff_settings(4, true, {});
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) EXPECT_NE(setting_json(settings[i]), setting_json(settings[j])) << settings[i].name << ' ' << settings[j].name;
+  }
+}
+
+}  // namespace
+}  // namespace lumitexel
