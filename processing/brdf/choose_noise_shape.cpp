@@ -87,7 +87,7 @@ NoiseShape choose_noise_shape(const Mixture& mixture, const Observations& observ
       best = shape;
       better = true;
     }
-    if (!better) break;
+    if (!better && !best.normal()) break;  // beyond the likeliest
   }
   return best;
 }

@@ -104,6 +104,8 @@ Clustering cluster_materials(const Observations& observations, const LumitexelLi
   r = maximise_expectation(mixture, observations, finalists, settled, {kFinalRounds, kFinalSettled});
   if (settled.estimate_error) settle_with_edges(mixture, observations, finalists, settled, r);
   choose_lobes(mixture, observations, finalists, r, settled, fits);
+  // With their lobes the materials' scales and tails changed.
+  if (!mixture.noise.normal()) mixture.noise = choose_noise_shape(mixture, observations, finalists, r);
   // What all is measured against: the best mean prediction, whatever the materials were fitted by.
   MaterialFitOptions mean = settled;
   mean.mean_fit.reset();

@@ -30,7 +30,8 @@ bool gains_a_share(const std::vector<SquaredError>& later, const std::vector<Squ
 
 bool loses_little(const std::vector<SquaredError>& later, const std::vector<SquaredError>& earlier) {
   for (const auto kind : {&SquaredError::clipped, &SquaredError::root}) {
-    if (total_error(later).*kind > (1.0 + kMostLoss) * total_error(earlier).*kind) return false;
+    const bool little = total_error(later).*kind <= (1.0 + kMostLoss) * total_error(earlier).*kind;
+    if (!little) return false;  // nor what is no number
     std::vector<double> allowed = values(earlier, kind);
     for (double& value : allowed) value *= 1.0 + kShare;
     if (excess_in_standard_errors(values(later, kind), allowed) > kStandardErrors) return false;

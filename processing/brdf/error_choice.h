@@ -17,7 +17,8 @@ namespace lumitexel {
 enum class Claim {
   Better,    // a gain of over 2 SE, and no loss of as much in either kind: to be wrong about it costs little one way, a model without its
              // highlights the other
-  Richer,    // that, and half a percent of gain: richer models differ from poorer ones by chance, and surely, since every sample errs a little less
+  Richer,    // that, and half a percent of gain: richer models, and materials sought anew, differ from those before by chance, and surely,
+             // since every sample errs a little less
   Efficient  // no loss in either kind of over two percent, or, by 2 SE, of over half a percent. For fits by estimated errors: where they predict as well, they
              // are the more exact ones. A hundredth of the samples, outliers, may make up most of an error, so that no gain would show
 };

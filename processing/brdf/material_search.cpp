@@ -84,14 +84,17 @@ MaterialSearch best_of(std::vector<MaterialSearch> searches, const Observations&
   return std::move(searches[best_predictor(mixtures, observations, judges(observations, selection), claim)]);
 }
 
-// From nothing; the most cautious first.
-std::vector<MaterialSearch> found_anew(const Observations& observations, const LumitexelList& selection, const ClusterOptions& options,
-                                       const std::function<void(int)>& report) {
+// From nothing.
+MaterialSearch found_anew(const Observations& observations, const LumitexelList& selection, const ClusterOptions& options,
+                          const std::function<void(int)>& report) {
   const auto search = [&](ErrorSource errors) { return search_with(errors, observations, selection, options, report); };
-  if (options.errors == ErrorSource::Given || options.errors == ErrorSource::Estimated) return {search(options.errors)};
+  if (options.errors == ErrorSource::Given || options.errors == ErrorSource::Estimated) return search(options.errors);
   MaterialSearch estimated = search(ErrorSource::Estimated), labels = with_mean_fits(estimated, observations, selection, options);
-  if (options.errors == ErrorSource::Labels) return {std::move(labels)};
-  return {search(ErrorSource::Given), best_of({std::move(labels), std::move(estimated)}, observations, selection, Claim::Efficient)};
+  if (options.errors == ErrorSource::Labels) return labels;
+  MaterialSearch cautious = best_of({search(ErrorSource::Given), std::move(labels)}, observations, selection, Claim::Better);
+  // Labels and estimates tell the same materials apart.
+  const Claim claim = cautious.errors == ErrorSource::Labels ? Claim::Efficient : Claim::Better;
+  return best_of({std::move(cautious), std::move(estimated)}, observations, selection, claim);
 }
 
 MaterialSearch with_family(MaterialSearch search, BrdfFamily family, const Observations& observations, const LumitexelList& selection) {
@@ -145,9 +148,9 @@ MaterialSearch search_for_materials(const Observations& observations, const Lumi
   std::vector<MaterialSearch> searches;
   if (options.before.clustering != nullptr) searches.push_back(adapted(*options.before.clustering, observations, selection, options));
   if (searches.empty() || options.before.anew) {
-    for (MaterialSearch& search : found_anew(observations, selection, options, report)) searches.push_back(std::move(search));
+    searches.push_back(found_anew(observations, selection, options, report));
   }
-  MaterialSearch best = best_of(std::move(searches), observations, selection, Claim::Better);
+  MaterialSearch best = best_of(std::move(searches), observations, selection, Claim::Richer);
   const bool known = options.before.clustering != nullptr && !options.before.anew;
   return known ? best : with_lobes_asked_for(std::move(best), observations, selection, options);
 }

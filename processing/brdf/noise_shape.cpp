@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 namespace lumitexel {
 namespace {
@@ -47,6 +48,7 @@ WhitenedSquares whitened_squares(const ErrorModel& error, const Observation& sam
 }
 
 ShapedDeviance::ShapedDeviance(const ErrorModel& error, int channels, const NoiseShape& shape) : channels_(channels) {
+  if (error.outlier_share <= 0.0 && error.freedom < ErrorModel::kGaussian) throw std::invalid_argument("noise shape: of errors with Student's tails");
   const double p = shape.power, share = std::max(error.outlier_share, kLeastOutliers);
   const double scale = error.outlier_share > 0.0 ? error.outlier_scale : kLeastOutlierScale;
   half_power_ = 0.5 * p;

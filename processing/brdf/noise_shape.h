@@ -30,7 +30,7 @@ struct WhitenedSquares {
 WhitenedSquares whitened_squares(const ErrorModel& error, const Observation& sample, int channels, const ChannelValues& predicted);
 
 // Minus twice the log likelihood of samples with such errors, up to the constant of misfit.h. The error model has one normal distribution
-// or two, not Student's t.
+// or two; std::invalid_argument for Student's t.
 class ShapedDeviance {
  public:
   ShapedDeviance(const ErrorModel& error, int channels, const NoiseShape& shape);

@@ -1,5 +1,6 @@
 #include "processing/fit/tradeoff_journal.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "drivers/error.h"
@@ -15,21 +16,29 @@ constexpr const char* kEntries = "tradeoff_measurements";
 
 Json entry_of(const std::string& key, const TradeoffSetting& setting) { return {{"of", key}, {"setting", setting_json(setting)}}; }
 
+Json entries_in(const std::filesystem::path& file) {
+  const Json document = Json::parse(read_whole_file(file), nullptr, false);
+  const bool ours = document.is_object() && document.contains(kEntries) && document.at(kEntries).is_array();
+  const auto is_entry = [](const Json& entry) { return entry.is_object() && entry.contains("of") && entry.contains("setting") && entry.contains("measured"); };
+  if (!ours || !std::all_of(document.at(kEntries).begin(), document.at(kEntries).end(), is_entry)) {
+    throw BadInput(file.string(), "a file of another kind", "one that an earlier tradeoff --keep wrote, or the name of a new one");
+  }
+  return document.at(kEntries);
+}
+
 }  // namespace
 
 TradeoffJournal::TradeoffJournal(std::filesystem::path file, std::string key) : file_(std::move(file)), key_(std::move(key)) {
-  if (!std::filesystem::exists(file_)) return;
-  const Json document = Json::parse(read_whole_file(file_), nullptr, false);
-  if (!document.is_object() || !document.contains(kEntries) || !document.at(kEntries).is_array()) {
-    throw BadInput(file_.string(), "a file of another kind", "one that an earlier tradeoff --keep wrote, or the name of a new one");
-  }
-  entries_ = document.at(kEntries);
+  if (std::filesystem::exists(file_)) entries_ = entries_in(file_);
+  write();  // at once: hours later would be late to learn that it cannot be
 }
+
+void TradeoffJournal::write() const { write_whole_file(file_, Json{{kEntries, entries_}}.dump(1) + "\n"); }
 
 std::optional<TradeoffMeasurement> TradeoffJournal::known(const TradeoffSetting& setting) const {
   const Json wanted = entry_of(key_, setting);
   for (const Json& entry : entries_) {
-    if (entry.value("of", Json()) != wanted.at("of") || entry.value("setting", Json()) != wanted.at("setting")) continue;
+    if (entry.at("of") != wanted.at("of") || entry.at("setting") != wanted.at("setting")) continue;
     TradeoffMeasurement measurement;
     measurement.setting = setting;
     try {
@@ -47,7 +56,7 @@ void TradeoffJournal::keep(const TradeoffMeasurement& measurement) {
   Json entry = entry_of(key_, measurement.setting);
   entry["measured"] = measurement_json(measurement);
   entries_.push_back(std::move(entry));
-  write_whole_file(file_, Json{{kEntries, entries_}}.dump(1) + "\n");
+  write();
 }
 
 }  // namespace lumitexel

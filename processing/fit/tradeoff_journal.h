@@ -12,8 +12,8 @@ namespace lumitexel {
 
 class TradeoffJournal {
  public:
-  // key: of session and program, whose measurements these are; those of others stay in the file and are not looked at. A file that is not
-  // there is an empty journal. Throws BadInput if it holds something else.
+  // key: of session, program and machine, whose measurements these are; those of others stay in the file and are not looked at. A file that is
+  // not there becomes an empty journal. Throws BadInput if it holds something else, Error where it cannot be written. One run at a time.
   TradeoffJournal(std::filesystem::path file, std::string key);
 
   std::optional<TradeoffMeasurement> known(const TradeoffSetting& setting) const;
@@ -22,6 +22,7 @@ class TradeoffJournal {
  private:
   std::filesystem::path file_;
   std::string key_;
+  void write() const;
   nlohmann::ordered_json entries_ = nlohmann::ordered_json::array();
 };
 

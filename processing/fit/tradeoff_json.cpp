@@ -27,7 +27,8 @@ Json gain_json(const std::optional<TradeoffGain>& gain) {
 
 Json setting_json(const TradeoffSetting& setting) {
   const FitOptions& options = setting.options;
-  return {{"quality", options.quality},
+  return {{"name", setting.name},
+          {"quality", options.quality},
           {"method", options.method == FitMethod::Paper ? "paper" : "lumitexel"},
           {"family", options.family ? to_string(*options.family) : "auto"},
           {"lobe_shapes", to_string(options.lobe_shapes)},
@@ -42,6 +43,10 @@ Json setting_json(const TradeoffSetting& setting) {
           {"materials", options.materials},
           {"views", setting.fit_views == 0 ? Json("all") : Json(setting.fit_views)},
           {"pixel_block", setting.pixel_block},
+          {"plain_projection", options.plain_projection},
+          {"intensity_weight", options.intensity_weight},
+          {"relative_error", options.relative_error},
+          {"error_floor_share", options.error_floor_share},
           {"learning_lumitexels", options.learning_lumitexels},
           {"final_lumitexels", options.final_lumitexels}};
 }

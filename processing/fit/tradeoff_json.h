@@ -7,7 +7,8 @@
 
 namespace lumitexel {
 
-// Everything that a fit of this setting depends on besides the session and the program.
+// What a setting of this program changes about a fit; what none of them changes (layout, how normals and light between surfaces are
+// sought) only another program would change.
 nlohmann::ordered_json setting_json(const TradeoffSetting& setting);
 
 nlohmann::ordered_json measurement_json(const TradeoffMeasurement& measurement);  // figures that do not exist are null

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <memory>
 #include <sstream>
 
@@ -179,7 +180,18 @@ void describe_lamp_size(const LampSummary& lamp, std::ostream& text) {
   }
 }
 
+// Views whose light the spheres did not measure, each with how many of them showed it.
+void describe_unmeasured(const std::vector<LightSummary>& lights, std::ostream& text) {
+  for (const LightSummary& light : lights) {
+    if (light.from_spheres) continue;
+    text << "  " << light.view << ": its light stands where the arm says, " << light.highlights
+         << " of its highlights could be told; three that agree, and a distance known to half of itself, are a measurement\n";
+  }
+}
+
 void describe(const CalibratedSession& session, const CalibrationSummary& summary, std::ostream& text) {
+  constexpr int kDigits = 4;  // no sigma is known better
+  text << std::setprecision(kDigits);
   text << session.views.size() << " views calibrated, " << session.channels << " channels\n";
   const LensSummary& lens = summary.lens;
   if (lens.reprojection_px) {
@@ -203,11 +215,12 @@ void describe(const CalibratedSession& session, const CalibrationSummary& summar
   text << "light: " << measured << " of " << summary.lights.size() << " measured by the spheres, highlights fit to "
        << summary.sphere_residual_px << " px rms on " << summary.spheres_seen << " spheres, arm within "
        << 1e3 * summary.arm_residual_m << " mm rms\n";
+  describe_unmeasured(summary.lights, text);
   for (const StrayLightSummary& light : summary.stray_lights) describe_stray(light, text);
   describe_lamp_size(summary.lamp, text);
-  text << "scale: gray card to " << 100.0 * summary.scale_sigma << " %, intensity";
+  text << "scale: gray card to " << 100.0 * summary.scale_sigma << " %, the lamp's intensity";
   for (const double intensity : summary.intensity) text << ' ' << intensity;
-  text << "\nlamp: " << (summary.lamp.drifts ? "drifts" : "steady, as far as can be told") << ", "
+  text << " m^2 in the unit of the photographs' radiance\nlamp: " << (summary.lamp.drifts ? "drifts" : "steady, as far as can be told") << ", "
        << (summary.lamp.pattern_parameters > 0 ? "with" : "no") << " angular pattern; card read in "
        << summary.lamp.card_views << " views\nsensor (" << summary.sensor.source << "): "
        << summary.sensor.electrons_per_dn << " e/DN, read noise " << summary.sensor.read_noise_dn << " DN, "
@@ -291,7 +304,7 @@ CommandResult run(const CalibrateOptions& options, CommandContext& context) {
 void add_calibrate_command(CLI::App& app, CommandAction& action) {
   const auto options = std::make_shared<CalibrateOptions>();
   CLI::App* command =
-      app.add_subcommand("calibrate", "Sensor, lens, poses, light positions, absolute scale, radiance; with uncertainties");
+      app.add_subcommand("calibrate", "Sensor, lens, poses, light positions, absolute scale, radiance; with uncertainties. Kept in SESSION/derived, where fit finds them");
   command->add_option("SESSION", options->session, "The session's folder")->required();
   command->add_option("--page", options->page, "Writes what was found as one HTML page, with pictures");
   command->add_option("--lens-out", options->lens_out, "Writes the lens calibration, for capture --lens");

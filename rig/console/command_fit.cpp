@@ -152,7 +152,7 @@ const char* meaning(ErrorSource errors) {
 std::string error_line(const FitSettings& settings, const FitSummary& summary) {
   if (settings.method == "paper") return "";
   return line("errors: %s (%s)%s\n", to_string(summary.errors), meaning(summary.errors),
-              settings.errors == "auto" ? ", which predicted left-out samples best" : ", as told");
+              settings.errors == "auto" ? ", chosen by left-out samples" : ", as told");
 }
 
 // Only what was left to the samples.
@@ -251,7 +251,7 @@ CommandResult fit_command(const FitSettings& settings, CommandContext& context) 
 
 void add_fit_command(CLI::App& app, CommandAction& action) {
   auto settings = std::make_shared<FitSettings>();
-  CLI::App* command = app.add_subcommand("fit", "Turn a session into a model: materials, and weights for every texel");
+  CLI::App* command = app.add_subcommand("fit", "Turn a session into a model: materials, and weights for every texel. Calibrates the session first, into its derived/");
   command->add_option("SESSION", settings->session, "Session to fit: captured or imported")->required();
   command->add_option("--out", settings->out, "Folder of the model; a model that is there is replaced")->required();
   command->add_option("--quality", settings->quality,
@@ -283,7 +283,7 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
   command->add_option("--errors", settings->errors,
                       "What a fit takes for noise. given: 30 % of each prediction and of the median; estimated: what each material's "
                       "residuals say, outliers counting less; labels: estimated for telling materials apart, given for fitting "
-                      "them; auto: whichever predicts left-out samples best")
+                      "them; auto: whichever predicts left-out samples best, and estimated also where it loses next to nothing")
       ->capture_default_str();
   command->add_flag("--principal-functions", settings->principal_functions,
                     "Also move the basis BRDFs of each material (principal function analysis), where left-out surface points are "

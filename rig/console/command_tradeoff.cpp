@@ -2,8 +2,10 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
+#include <thread>
 
 #include "processing/calibration/calibrated_session.h"
 #include "processing/fit/tradeoff.h"
@@ -96,15 +98,21 @@ std::string setting_names() {
   return names;
 }
 
-// Another program may measure otherwise.
-std::string program_sha256() { return sha256_hex(read_whole_file("/proc/self/exe")); }
+// Whose measurements may stand beside each other: another program fits otherwise, another machine takes other times.
+std::string program_and_machine() {
+  std::ifstream processors("/proc/cpuinfo");
+  std::string line, model = "unknown processor";
+  while (std::getline(processors, line) && !line.starts_with("model name")) {}
+  if (line.starts_with("model name")) model = line.substr(line.find(':') + 1);
+  return "program " + sha256_hex(read_whole_file("/proc/self/exe")) + " on " + std::to_string(std::thread::hardware_concurrency()) + " x" + model;
+}
 
 CommandResult tradeoff_command(const TradeoffArguments& arguments, CommandContext& context) {
   const auto settings = tradeoff_settings(materials_wanted("--materials", arguments.materials), arguments.full, arguments.only);
   const SessionStore store = session_given("SESSION", arguments.session);
   const CalibratedSession session = calibrate_session(store, context.progress);
   std::optional<TradeoffJournal> journal;
-  if (!arguments.keep.empty()) journal.emplace(arguments.keep, session.key + " by " + program_sha256());
+  if (!arguments.keep.empty()) journal.emplace(arguments.keep, session.key + " by " + program_and_machine());
   const Tradeoff tradeoff = measure_tradeoff(session, settings, journal ? &*journal : nullptr, context.progress);
   const std::string json = tradeoff_json(tradeoff);
   CommandResult result;
@@ -129,7 +137,7 @@ void add_tradeoff_command(CLI::App& app, CommandAction& action) {
   command->add_flag("--reference,--full", arguments->full, "Also the reference preset, which learns on every surface point and takes long");
   command->add_option("--only", arguments->only, "These settings only: " + setting_names())->delimiter(',')->type_name("NAME");
   command->footer(meanings(tradeoff_settings(4, true, {})));
-  command->add_option("--keep", arguments->keep, "File of measurements, added to as they come; those it has of this session, setting and program are not made again");
+  command->add_option("--keep", arguments->keep, "File of measurements, added to as they come; those it has of this session, setting, program and machine are not made again");
   command->add_option("--page", arguments->page, "HTML file to write, with a drawing of error against seconds");
   command->callback([arguments, &action] {
     action = [arguments](CommandContext& context) { return tradeoff_command(*arguments, context); };

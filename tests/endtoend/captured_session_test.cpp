@@ -108,7 +108,7 @@ void expect_replays(const TemporaryFolder& folder, const std::string& session, c
     const ProgramRun run = run_program(command);
     EXPECT_EQ(run.exit_code, 0) << command << '\n' << run.errors;
     if (command.starts_with("fit")) {
-      EXPECT_NE(run.output.find("which predicted left-out samples best"), std::string::npos) << run.output;
+      EXPECT_NE(run.output.find("chosen by left-out samples"), std::string::npos) << run.output;
     }
   }
   const ProgramRun unknown = run_program("replay " + session + " --out " + shorter + "2 --without view=99");

@@ -30,9 +30,12 @@ TEST_F(RigFileTest, WithoutABaseItIsTheFileByteForByte) {
 TEST_F(RigFileTest, PathsAreRelativeToAFileNamedWithoutItsFolder) {
   write("a.toml", "name = \"a\"\n");
   write("b.toml", "base = \"a.toml\"\n[recorded]\nsession = \"S\"\n");
-  std::filesystem::current_path(folder_.path());
+  const struct ThereAndBack {
+    explicit ThereAndBack(const std::filesystem::path& there) { std::filesystem::current_path(there); }
+    ~ThereAndBack() { std::filesystem::current_path(back); }
+    std::filesystem::path back = std::filesystem::current_path();
+  } there(folder_.path());
   const std::string merged = read_rig_file("b.toml");
-  std::filesystem::current_path("/");
   EXPECT_NE(merged.find((std::filesystem::canonical(folder_.path()) / "S").string()), std::string::npos) << merged;
 }
 

@@ -51,6 +51,9 @@ class Domain {
  public:
   explicit Domain(const HighlightShape& shape) : sphere_(shape.sphere), peaks_(shape.peaks) {
     if (peaks_.empty()) peaks_.emplace_back();
+    double sum = 0.0;
+    for (const HighlightPeak& peak : peaks_) sum += peak.share;
+    for (HighlightPeak& peak : peaks_) peak.share /= sum;
   }
   const std::vector<HighlightPeak>& peaks() const { return peaks_; }
 

@@ -50,7 +50,7 @@ struct SphereInView {
 
 struct HighlightPeak {
   Eigen::Vector2d offset_px = Eigen::Vector2d::Zero();  // from the centre, in t's plane
-  double share = 1;                                     // of the whole highlight's light; all shares sum to 1
+  double share = 1;                                     // of the whole highlight's light, beside the others' shares
 };
 
 struct HighlightShape {

@@ -34,7 +34,7 @@ std::optional<Eigen::Vector3d> light_from_highlights(const CameraModel& camera, 
 // Pixel at which the camera sees `light` mirrored in the sphere.
 Eigen::Vector2d highlight_pixel(const CameraModel& camera, const MirrorSphere& sphere, const Eigen::Vector3d& light);
 // One of several emitters alike: where it is seen mirrored, and its share of their light, which falls with its distance from there
-// squared. Shares sum to 1.
+// squared. They are taken to shine evenly to all sides: what a lamp's own pattern adds nobody has told yet when this is asked. Shares sum to 1.
 struct EmitterImage {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
   double share = 0;

@@ -57,9 +57,12 @@ std::vector<std::size_t> spread_views(std::size_t views, const std::function<boo
 }
 
 double mean_square_along(const Eigen::Vector2d& u, const std::vector<HighlightPeak>& peaks) {
-  double sum = 0.0;
-  for (const HighlightPeak& peak : peaks) sum += peak.share * std::pow(peak.offset_px.dot(u), 2);
-  return sum;
+  double sum = 0.0, shares = 0.0;
+  for (const HighlightPeak& peak : peaks) {
+    sum += peak.share * std::pow(peak.offset_px.dot(u), 2);
+    shares += peak.share;
+  }
+  return peaks.empty() ? 0.0 : sum / shares;
 }
 
 PointWidths measure_point_widths(std::size_t views, const PictureOf& ring, const CameraModel& camera, const SphereLine& line,

@@ -68,6 +68,9 @@ TEST(TradeoffJournal, RefusesAFileOfAnotherKind) {
   const TemporaryFolder folder;
   std::ofstream(folder.path() / "model.json") << "{\"materials\": 4}";
   EXPECT_THROW(TradeoffJournal(folder.path() / "model.json", "a"), BadInput);
+  std::ofstream(folder.path() / "odd.json") << "{\"tradeoff_measurements\": [1]}";
+  EXPECT_THROW(TradeoffJournal(folder.path() / "odd.json", "a"), BadInput);
+  EXPECT_THROW(TradeoffJournal(folder.path() / "nowhere" / "kept.json", "a"), Error);  // at once, not after the first fit
 }
 
 // Whatever a fit depends on has to be in the setting's JSON, or a journal takes one setting for another.
