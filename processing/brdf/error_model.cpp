@@ -48,17 +48,20 @@ ScaledResiduals scaled_residuals(const ErrorModel& error, const Observation& sam
   return residuals;
 }
 
+double whitened(const ErrorModel& error, const ScaledResiduals& residuals, Eigen::Index i) {
+  const ChannelMatrix& whitening = error.whitening();
+  if (whitening.size() == 0) return residuals.over_scale[static_cast<std::size_t>(i)];
+  double value = 0.0;
+  for (Eigen::Index j = 0; j <= i; ++j) value += whitening(i, j) * residuals.over_scale[static_cast<std::size_t>(j)];
+  return value;
+}
+
 SampleMisfit sample_misfit(const ErrorModel& error, const ScaledResiduals& residuals, int channels) {
   SampleMisfit misfit;
   double scales = 1.0;
-  const ChannelMatrix& whitening = error.whitening();
   for (Eigen::Index i = 0; i < channels; ++i) {
     scales *= residuals.scale[static_cast<std::size_t>(i)];
-    double value = residuals.over_scale[static_cast<std::size_t>(i)];
-    if (whitening.size() > 0) {
-      value = 0.0;
-      for (Eigen::Index j = 0; j <= i; ++j) value += whitening(i, j) * residuals.over_scale[static_cast<std::size_t>(j)];
-    }
+    const double value = whitened(error, residuals, i);
     misfit.squares += value * value;
   }
   misfit.variances = scales * scales;

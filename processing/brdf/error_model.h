@@ -64,6 +64,7 @@ struct ScaledResiduals {
   std::array<double, kMaxChannels> over_scale{}, scale{};
 };
 ScaledResiduals scaled_residuals(const ErrorModel& error, const Observation& sample, int channels, const ChannelValues& predicted);
+double whitened(const ErrorModel& error, const ScaledResiduals& residuals, Eigen::Index i);  // the i-th of the independent ones
 SampleMisfit sample_misfit(const ErrorModel& error, const ScaledResiduals& residuals, int channels);
 SampleMisfit sample_misfit(const ErrorModel& error, const Observation& sample, int channels, const ChannelValues& predicted);
 

@@ -32,19 +32,14 @@ double log_height(const NoiseShape& shape) {
 
 WhitenedSquares whitened_squares(const ErrorModel& error, const Observation& sample, int channels, const ChannelValues& predicted) {
   const ScaledResiduals residuals = scaled_residuals(error, sample, channels, predicted);
-  const ChannelMatrix& whitening = error.whitening();
-  WhitenedSquares whitened;
+  WhitenedSquares squares;
   for (Eigen::Index i = 0; i < channels; ++i) {
     const auto c = static_cast<std::size_t>(i);
-    double z = residuals.over_scale[c];
-    if (whitening.size() > 0) {
-      z = 0.0;
-      for (Eigen::Index j = 0; j <= i; ++j) z += whitening(i, j) * residuals.over_scale[static_cast<std::size_t>(j)];
-    }
-    whitened.square[c] = z * z;
-    whitened.variances *= residuals.scale[c] * residuals.scale[c];
+    const double z = whitened(error, residuals, i);
+    squares.square[c] = z * z;
+    squares.variances *= residuals.scale[c] * residuals.scale[c];
   }
-  return whitened;
+  return squares;
 }
 
 ShapedDeviance::ShapedDeviance(const ErrorModel& error, int channels, const NoiseShape& shape) : channels_(channels) {

@@ -73,7 +73,7 @@ std::vector<EmitterImage> emitter_images(const CameraModel& camera, const Mirror
   double sum = 0.0;
   for (const Eigen::Vector3d& emitter : emitters) {
     const Eigen::Vector3d point = mirror_point(sphere, Eigen::Vector3d::Zero(), emitter);
-    images.push_back({camera.project(point), 1.0 / (emitter - point).squaredNorm()});
+    images.push_back({point, camera.project(point), 1.0 / (emitter - point).squaredNorm()});
     sum += images.back().share;
   }
   for (EmitterImage& image : images) image.share /= sum;

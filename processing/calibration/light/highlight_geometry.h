@@ -36,6 +36,7 @@ Eigen::Vector2d highlight_pixel(const CameraModel& camera, const MirrorSphere& s
 // One of several emitters alike: where it is seen mirrored, and its share of their light, which falls with its distance from there
 // squared. They are taken to shine evenly to all sides: what a lamp's own pattern adds nobody has told yet when this is asked. Shares sum to 1.
 struct EmitterImage {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  // on the sphere
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
   double share = 0;
 };

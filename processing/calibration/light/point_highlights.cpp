@@ -101,12 +101,9 @@ HighlightShape lamp_shape(const SphereInView& view, const Eigen::Vector3d& light
   HighlightShape shape{.sphere = view};
   if (!(lamp.radius_m > 0.0)) return shape;
   const Eigen::Vector2d centre = disc_highlight_pixel(view.camera, view.sphere, light, lamp);
-  const std::vector<Eigen::Vector3d> places = places_on_disc(light, lamp);
-  const std::vector<EmitterImage> images = emitter_images(view.camera, view.sphere, places);
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const Eigen::Vector3d point = mirror_point(view.sphere, Eigen::Vector3d::Zero(), places[i]);
-    const auto offset = across_centre(view, centre, (point - view.sphere.centre).normalized());
-    if (offset) shape.peaks.push_back({*offset, images[i].share});
+  for (const EmitterImage& image : emitter_images(view.camera, view.sphere, places_on_disc(light, lamp))) {
+    const auto offset = across_centre(view, centre, (image.point - view.sphere.centre).normalized());
+    if (offset) shape.peaks.push_back({*offset, image.share});
   }
   return shape;
 }

@@ -17,9 +17,7 @@ HighlightShape ring_shape(const SphereInView& view, double radius_m) {
   HighlightShape shape{.sphere = view};
   const Eigen::Vector2d centre = ring_highlight_pixel(view.camera, view.sphere, radius_m);
   for (const EmitterImage& image : ring_images(view.camera, view.sphere, radius_m)) {
-    const auto mirrored = mirrored_ray(view.sphere, {Eigen::Vector3d::Zero(), view.camera.unproject(image.pixel)});
-    if (!mirrored) continue;
-    const auto offset = across_centre(view, centre, (mirrored->origin - view.sphere.centre).normalized());
+    const auto offset = across_centre(view, centre, (image.point - view.sphere.centre).normalized());
     if (offset) shape.peaks.push_back({*offset, image.share});
   }
   return shape;
