@@ -14,9 +14,8 @@ std::vector<double> values(const std::vector<SquaredError>& errors, double Squar
 }
 
 bool predicts_better(const std::vector<SquaredError>& later, const std::vector<SquaredError>& earlier) {
-  if (excess_in_standard_errors(relative_errors(later, total_error(earlier)), relative_errors(earlier, total_error(earlier))) >= -kStandardErrors) {
-    return false;
-  }
+  const SquaredError scale = total_error(earlier);
+  if (excess_in_standard_errors(relative_errors(later, scale), relative_errors(earlier, scale)) >= -kStandardErrors) return false;
   for (const auto kind : {&SquaredError::clipped, &SquaredError::root}) {
     if (excess_in_standard_errors(values(later, kind), values(earlier, kind)) > kStandardErrors) return false;
   }

@@ -138,7 +138,7 @@ void add_tradeoff_command(CLI::App& app, CommandAction& action) {
   command->add_option("--only", arguments->only, "These settings only: " + setting_names())->delimiter(',')->type_name("NAME");
   command->footer(meanings(tradeoff_settings(4, true, {})));
   command->add_option("--keep", arguments->keep, "File of measurements, added to as they come; those it has of this session, setting, program and machine are not made again");
-  command->add_option("--page", arguments->page, "HTML file to write, with a drawing of error against seconds");
+  command->add_option("--page", arguments->page, "HTML file to write, with a drawing of error against CPU seconds");
   command->callback([arguments, &action] {
     action = [arguments](CommandContext& context) { return tradeoff_command(*arguments, context); };
   });

@@ -15,8 +15,9 @@ namespace {
 
 HighlightShape ring_shape(const SphereInView& view, double radius_m) {
   HighlightShape shape{.sphere = view};
-  const Eigen::Vector2d centre = ring_highlight_pixel(view.camera, view.sphere, radius_m);
-  for (const EmitterImage& image : ring_images(view.camera, view.sphere, radius_m)) {
+  const std::vector<EmitterImage> images = ring_images(view.camera, view.sphere, radius_m);
+  const Eigen::Vector2d centre = centroid(images);
+  for (const EmitterImage& image : images) {
     const auto offset = across_centre(view, centre, (image.point - view.sphere.centre).normalized());
     if (offset) shape.peaks.push_back({*offset, image.share});
   }

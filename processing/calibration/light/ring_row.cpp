@@ -195,9 +195,9 @@ RingRow read_ring_row(std::size_t views, const PictureOf& picture, const CameraM
   const SphereLine line = line_through(camera, pooled_rings(seen, spheres), rig.spheres);
   const ShapeOf ring = [&](std::size_t, const SeenHighlight& highlight) {
     HighlightShape shape;
-    const MirrorSphere sphere = line.sphere(highlight.sphere);
-    const Eigen::Vector2d centre = ring_highlight_pixel(camera, sphere, rig.ring_flash.radius_m);
-    for (const EmitterImage& image : ring_images(camera, sphere, rig.ring_flash.radius_m)) {
+    const std::vector<EmitterImage> images = ring_images(camera, line.sphere(highlight.sphere), rig.ring_flash.radius_m);
+    const Eigen::Vector2d centre = centroid(images);
+    for (const EmitterImage& image : images) {
       shape.peaks.push_back({image.pixel - centre, image.share});
     }
     return shape;

@@ -64,7 +64,7 @@ TEST(ErrorChoice, AGainInOneKindDoesNotPayForALossInTheOther) {
 }
 
 // Against the mean 0.208, which is best: 0.2085 errs by a thousandth of the square roots' error more, which nobody sees; 0.25 by a
-// tenth of that; 0.01 by a quarter of the clipped error.
+// tenth of it; 0.01 by a quarter of the clipped error.
 TEST(ErrorChoice, TheMoreExactFitIsTakenWhereItLosesNothingThatMatters) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     EXPECT_EQ(chosen({kMean, 0.2085}, seed, Claim::Efficient), 1u) << seed;

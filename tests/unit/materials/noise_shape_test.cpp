@@ -35,7 +35,8 @@ ErrorModel two_normals(double share) {
 
 double one(const ShapedMisfit& shaped, const Observation& sample) { return shaped.of(std::span(&sample, 1)); }
 
-// The density over all reflectances is one and its variance that of the scale, by 40,000 steps over +- 60 of it. Measurements are floats: 1e-4.
+// The density over all reflectances is one and its variance that of the scale, by 40,000 steps over +- 60 of it. Measurements are floats, and one
+// in 100,000 is always an outlier: a thousandth, of the variance two.
 TEST(NoiseShape, IsADensityOfTheScalesVariance) {
   const double mean = predicted_reflectance(kMatte, measured(0.2).geometry)[0], scale = 0.05 * mean;
   for (const double share : {0.0, 0.02}) {
