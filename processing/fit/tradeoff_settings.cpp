@@ -30,6 +30,14 @@ std::vector<TradeoffSetting> all_settings(int materials) {
   add("principal", "basis functions moved where that predicts better").options.principal_functions = true;
   add("errors-given", "30 % errors everywhere, nothing estimated").options.errors = ErrorSource::Given;
   add("lobes-2", "up to two lobes a material").options.most_lobes = 2;
+  add("lobes-3", "up to three lobes a material").options.most_lobes = 3;
+  add("draft-lobes-2", "draft preset with up to two lobes a material", "draft").options.most_lobes = 2;
+  for (const std::size_t learning : {2000u, 5000u}) {
+    const std::string number = std::to_string(learning);
+    FitOptions& options = add("learning-" + number + "-lobes-2", number + " points, up to two lobes a material").options;
+    options.learning_lumitexels = learning;
+    options.most_lobes = 2;
+  }
   add("ggx", "GGX lobes").options.family = BrdfFamily::Ggx;
   add("family-auto", "lobes of the family that predicts best").options.family.reset();
   add("lobe-shapes-auto", "a lobe shape for each channel where that predicts better").options.lobe_shapes = LobeShapes::Auto;
