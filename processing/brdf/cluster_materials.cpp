@@ -94,6 +94,7 @@ Clustering cluster_materials(const Observations& observations, const LumitexelLi
   settled.family = search.fit.family;
   settled.shared_shape = search.fit.shared_shape;
   result.errors = search.errors;
+  result.choices = std::move(search.choices);
   result.fit = settled;
   std::vector<BrdfFit> fits;
   // The search went with one lobe each: more come in here, so that the mixture settles with them.

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "processing/brdf/choice.h"
 #include "processing/brdf/fit_material.h"
 #include "processing/brdf/mixture.h"
 #include "processing/brdf/observations.h"
@@ -50,6 +51,7 @@ struct Clustering {
   MaterialModel single;                   // one BRDF for everything, the best mean prediction under the given error model
   std::vector<FittedMaterial> materials;  // fewer than asked for if the samples do not tell so many apart
   ErrorSource errors = ErrorSource::Given;  // which source it was
+  std::vector<Choice> choices;            // that left-out samples made on the way
   MaterialFitOptions fit;                 // as every material was fitted at the end: which family, which shapes
   std::vector<int> label;                 // material of every lumitexel; those without samples get the largest material
 };

@@ -1,7 +1,5 @@
 #include "processing/brdf/error_choice.h"
 
-#include "processing/brdf/left_out_error.h"
-
 namespace lumitexel {
 namespace {
 
@@ -13,18 +11,19 @@ std::vector<double> values(const std::vector<SquaredError>& errors, double Squar
   return all;
 }
 
-bool predicts_better(const std::vector<SquaredError>& later, const std::vector<SquaredError>& earlier) {
+// Of both kinds of error, each a share of the earlier one's.
+Gain gain(const std::vector<SquaredError>& later, const std::vector<SquaredError>& earlier) {
   const SquaredError scale = total_error(earlier);
-  if (excess_in_standard_errors(relative_errors(later, scale), relative_errors(earlier, scale)) >= -kStandardErrors) return false;
+  return gain_of(relative_errors(later, scale), relative_errors(earlier, scale));
+}
+
+bool predicts_better(const std::vector<SquaredError>& later, const std::vector<SquaredError>& earlier) {
+  const Gain both = gain(later, earlier);
+  if (both.share <= kStandardErrors * both.sigma) return false;
   for (const auto kind : {&SquaredError::clipped, &SquaredError::root}) {
     if (excess_in_standard_errors(values(later, kind), values(earlier, kind)) > kStandardErrors) return false;
   }
   return true;
-}
-
-bool gains_a_share(const std::vector<SquaredError>& later, const std::vector<SquaredError>& earlier) {
-  const SquaredError before = total_error(earlier), after = total_error(later);
-  return after.clipped / before.clipped + after.root / before.root <= 2.0 * (1.0 - kShare);
 }
 
 bool loses_little(const std::vector<SquaredError>& later, const std::vector<SquaredError>& earlier) {
@@ -40,7 +39,7 @@ bool loses_little(const std::vector<SquaredError>& later, const std::vector<Squa
 
 bool holds(Claim claim, const std::vector<SquaredError>& later, const std::vector<SquaredError>& earlier) {
   switch (claim) {
-    case Claim::Richer: return gains_a_share(later, earlier) && predicts_better(later, earlier);
+    case Claim::Richer: return gain(later, earlier).share >= kShare && predicts_better(later, earlier);
     case Claim::Efficient: return loses_little(later, earlier) || predicts_better(later, earlier);
     case Claim::Better: break;
   }
@@ -49,16 +48,13 @@ bool holds(Claim claim, const std::vector<SquaredError>& later, const std::vecto
 
 }  // namespace
 
-std::size_t best_predictor(const std::vector<const Mixture*>& mixtures, const Observations& observations, const LumitexelList& lumitexels,
-                           Claim claim) {
-  const double clip = clip_level(observations, lumitexels);
+std::size_t best_predictor(const std::string& of, const std::vector<Predictor>& predictors, Claim claim, std::vector<Choice>& choices) {
   std::size_t best = 0;
-  std::vector<SquaredError> least;
-  for (std::size_t i = 0; i < mixtures.size(); ++i) {
-    std::vector<SquaredError> errors = left_out_errors(*mixtures[i], observations, lumitexels, clip);
-    if (i > 0 && !holds(claim, errors, least)) continue;
-    best = i;
-    least = std::move(errors);
+  for (std::size_t i = 1; i < predictors.size(); ++i) {
+    const std::vector<SquaredError>&later = *predictors[i].errors, &earlier = *predictors[best].errors;
+    const bool taken = holds(claim, later, earlier);
+    choices.push_back({of, predictors[i].name, predictors[best].name, gain(later, earlier), taken});
+    if (taken) best = i;
   }
   return best;
 }

@@ -8,7 +8,11 @@
 // than it should be.
 #pragma once
 
-#include "processing/brdf/mixture.h"
+#include <string>
+#include <vector>
+
+#include "processing/brdf/choice.h"
+#include "processing/brdf/left_out_error.h"
 
 namespace lumitexel {
 
@@ -23,9 +27,14 @@ enum class Claim {
              // are the more exact ones. A hundredth of the samples, outliers, may make up most of an error, so that no gain would show
 };
 
-// Of mixtures learnt from the same lumitexels, judged by `lumitexels`, the most cautious first: the index of the one to keep. A later one
-// takes an earlier one's place where the claim holds.
-std::size_t best_predictor(const std::vector<const Mixture*>& mixtures, const Observations& observations, const LumitexelList& lumitexels,
-                           Claim claim);
+// A mixture by its name, and how it predicted the judges' left-out samples.
+struct Predictor {
+  std::string name;
+  const std::vector<SquaredError>* errors;
+};
+
+// Of mixtures learnt from the same lumitexels and judged by the same others, the most cautious first: the index of the one to keep. A later
+// one takes an earlier one's place where the claim holds. What each comparison said is added to `choices`, as a choice of `of`.
+std::size_t best_predictor(const std::string& of, const std::vector<Predictor>& predictors, Claim claim, std::vector<Choice>& choices);
 
 }  // namespace lumitexel

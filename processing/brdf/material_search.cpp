@@ -15,7 +15,8 @@ namespace {
 
 constexpr int kSearchRounds = 24, kRefitRounds = 8;  // of expectation-maximisation
 constexpr double kSearchSettled = 1e-4;              // of log likelihood a sample and round
-constexpr std::size_t kMostJudges = 20'000;         // lumitexels: as many as a draft's materials are learnt from, ten times over
+constexpr std::size_t kMostJudges = 20'000;         // lumitexels: ten times as many
+constexpr std::size_t kEnoughJudges = 2'000;        // lumitexels: as many as a draft's materials are learnt from
 constexpr int kMostExtra = 8;                        // materials beyond those wanted that splitting may make
 
 // While materials are told apart they all have a lobe: what a matte whole hides, a part may show.
@@ -23,7 +24,7 @@ MaterialSearch search_with(ErrorSource errors, const Observations& observations,
                            const ClusterOptions& options, const std::function<void(int)>& report) {
   const int wanted = options.materials > 0 ? options.materials : kMostMaterials;
   const int most = wanted == 1 ? 1 : std::min(2 * wanted, wanted + kMostExtra);
-  MaterialSearch search{errors, options.fit, {}};
+  MaterialSearch search{errors, options.fit, {}, {}, {}, false};
   search.fit.choose_lobes = false;
   search.fit.most_lobes = std::min(1, options.fit.most_lobes);
   search.fit.estimate_error = errors != ErrorSource::Given;
@@ -41,6 +42,7 @@ void refit(MaterialSearch& search, const Observations& observations, const Lumit
   const Responsibilities r = responsibilities(search.mixture, observations, selection);
   choose_lobes(search.mixture, observations, selection, r, search.fit, fits);
   maximise_expectation(search.mixture, observations, selection, search.fit, {kRefitRounds, kSearchSettled});
+  search.left_out.clear();
 }
 
 // The materials that estimated errors told apart, each with the best mean prediction for a BRDF.
@@ -54,7 +56,7 @@ MaterialSearch with_mean_fits(MaterialSearch search, const Observations& observa
 
 // The number of materials and what they are fitted by stay.
 MaterialSearch adapted(const Clustering& before, const Observations& observations, const LumitexelList& selection, const ClusterOptions& options) {
-  MaterialSearch search{before.errors, options.fit, {}};
+  MaterialSearch search{before.errors, options.fit, {}, before.choices, {}, true};
   search.fit.estimate_error = before.fit.estimate_error;
   if (before.fit.mean_fit) search.fit.mean_fit = options.fit.error;
   search.fit.family = before.fit.family;
@@ -69,20 +71,36 @@ MaterialSearch adapted(const Clustering& before, const Observations& observation
   return search;
 }
 
-// Who have not learnt; where too few are left, the learners themselves.
+// Who have not learnt, if that is enough of them, or as many as have; else the learners themselves.
 LumitexelList judges(const Observations& observations, const LumitexelList& selection) {
   const LumitexelList usable = with_samples(observations, kFewestSamples);
   LumitexelList others;
   std::set_difference(usable.begin(), usable.end(), selection.begin(), selection.end(), std::back_inserter(others));
-  return others.size() < selection.size() ? selection : thinned(others, kMostJudges);
+  return others.size() < std::min(selection.size(), kEnoughJudges) ? selection : thinned(others, kMostJudges);
 }
 
-MaterialSearch best_of(std::vector<MaterialSearch> searches, const Observations& observations, const LumitexelList& selection, Claim claim) {
+// Of searches that differ in `of`, each called by what `name_of` says of it.
+template <typename Name>
+MaterialSearch best_of(const std::string& of, std::vector<MaterialSearch> searches, Name name_of, const Observations& observations,
+                       const LumitexelList& selection, Claim claim) {
   if (searches.size() == 1) return std::move(searches.front());
-  std::vector<const Mixture*> mixtures;
-  for (const MaterialSearch& search : searches) mixtures.push_back(&search.mixture);
-  return std::move(searches[best_predictor(mixtures, observations, judges(observations, selection), claim)]);
+  const LumitexelList asked = judges(observations, selection);
+  const double clip = clip_level(observations, asked);
+  std::vector<Predictor> predictors;
+  for (MaterialSearch& search : searches) {
+    if (search.left_out.empty()) search.left_out = left_out_errors(search.mixture, observations, asked, clip);
+    predictors.push_back({name_of(search), &search.left_out});
+  }
+  std::vector<Choice> choices;
+  MaterialSearch best = std::move(searches[best_predictor(of, predictors, claim, choices)]);
+  best.choices.insert(best.choices.end(), choices.begin(), choices.end());
+  return best;
 }
+
+const char* errors_of(const MaterialSearch& search) { return to_string(search.errors); }
+const char* family_of(const MaterialSearch& search) { return to_string(search.fit.family); }
+const char* origin_of(const MaterialSearch& search) { return search.known_before ? "known before" : "found anew"; }
+const char* shapes_of(const MaterialSearch& search) { return to_string(search.fit.shared_shape ? LobeShapes::Shared : LobeShapes::Separate); }
 
 // From nothing.
 MaterialSearch found_anew(const Observations& observations, const LumitexelList& selection, const ClusterOptions& options,
@@ -91,10 +109,11 @@ MaterialSearch found_anew(const Observations& observations, const LumitexelList&
   if (options.errors == ErrorSource::Given || options.errors == ErrorSource::Estimated) return search(options.errors);
   MaterialSearch estimated = search(ErrorSource::Estimated), labels = with_mean_fits(estimated, observations, selection, options);
   if (options.errors == ErrorSource::Labels) return labels;
-  MaterialSearch cautious = best_of({search(ErrorSource::Given), std::move(labels)}, observations, selection, Claim::Better);
+  MaterialSearch cautious = best_of("errors", {search(ErrorSource::Given), std::move(labels)}, errors_of, observations, selection, Claim::Better);
   // Labels and estimates tell the same materials apart.
   const Claim claim = cautious.errors == ErrorSource::Labels ? Claim::Efficient : Claim::Better;
-  return best_of({std::move(cautious), std::move(estimated)}, observations, selection, claim);
+  estimated.choices = cautious.choices;
+  return best_of("errors", {std::move(cautious), std::move(estimated)}, errors_of, observations, selection, claim);
 }
 
 MaterialSearch with_family(MaterialSearch search, BrdfFamily family, const Observations& observations, const LumitexelList& selection) {
@@ -118,12 +137,12 @@ MaterialSearch with_lobes_asked_for(MaterialSearch search, const Observations& o
     for (const BrdfFamily family : {BrdfFamily::Lafortune, BrdfFamily::Ggx, BrdfFamily::Ward}) {
       if (family != families.front().fit.family) families.push_back(with_family(families.front(), family, observations, selection));
     }
-    search = best_of(std::move(families), observations, selection, Claim::Richer);
+    search = best_of("family", std::move(families), family_of, observations, selection, Claim::Richer);
   }
   if (options.lobe_shapes == LobeShapes::Auto && search.fit.shared_shape && observations.channels > 1) {
     std::vector<MaterialSearch> shapes{std::move(search)};
     shapes.push_back(with_separate_shapes(shapes.front(), observations, selection));
-    search = best_of(std::move(shapes), observations, selection, Claim::Richer);
+    search = best_of("lobe shapes", std::move(shapes), shapes_of, observations, selection, Claim::Richer);
   }
   return search;
 }
@@ -150,7 +169,7 @@ MaterialSearch search_for_materials(const Observations& observations, const Lumi
   if (searches.empty() || options.before.anew) {
     searches.push_back(found_anew(observations, selection, options, report));
   }
-  MaterialSearch best = best_of(std::move(searches), observations, selection, Claim::Richer);
+  MaterialSearch best = best_of("materials", std::move(searches), origin_of, observations, selection, Claim::Richer);
   const bool known = options.before.clustering != nullptr && !options.before.anew;
   return known ? best : with_lobes_asked_for(std::move(best), observations, selection, options);
 }

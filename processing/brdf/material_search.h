@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "processing/brdf/cluster_materials.h"
+#include "processing/brdf/left_out_error.h"
 
 namespace lumitexel {
 
@@ -11,6 +12,9 @@ struct MaterialSearch {
   ErrorSource errors = ErrorSource::Given;  // never Auto
   MaterialFitOptions fit;                   // as every material was fitted
   Mixture mixture;
+  std::vector<Choice> choices;              // that left-out samples made on the way to it
+  std::vector<SquaredError> left_out;       // how it predicts them (left_out_error.h); empty until it is asked
+  bool known_before = false;                // adapted, not found from nothing
 };
 
 // First, with lobes of options.fit.family and, but for LobeShapes::Separate, one shape for all channels: splits into more materials than

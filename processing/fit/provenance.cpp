@@ -25,6 +25,19 @@ json stages_json(const std::vector<StageCost>& stages) {
 
 json finite_or_null(double value) { return std::isfinite(value) ? json(value) : json(); }
 
+json choices_json(const std::vector<Choice>& choices) {
+  json list = json::array();
+  for (const Choice& choice : choices) {
+    list.push_back({{"of", choice.of},
+                    {"candidate", choice.candidate},
+                    {"over", choice.before},
+                    {"gain", choice.gain.share},
+                    {"gain_sigma", choice.gain.sigma},
+                    {"taken", choice.taken}});
+  }
+  return list;
+}
+
 json prior_json(const std::vector<PriorChoice>& prior) {
   json list = json::array();
   for (const PriorChoice& choice : prior) {
@@ -107,6 +120,7 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
   const bool paper = options.method == FitMethod::Paper;
   object["errors"] = paper ? json(nullptr) : json(to_string(summary.errors));  // the paper's method has its own, eq. 6
   object["family"] = to_string(summary.family);
+  object["choices"] = choices_json(summary.choices);
   object["bases_by_material"] = summary.bases_by_material;
   object["lobe_shapes"] = to_string(summary.lobe_shapes);
   object["materials"] = summary.texels_by_material.size();

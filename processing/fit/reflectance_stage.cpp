@@ -60,11 +60,18 @@ PriorChoice prior_for(const Observations& observations, const LumitexelList& mem
   return choose_prior(observations, members, TexelBasis(basis, material.brdf, material.error, options.precision));
 }
 
+std::string with_material(const std::string& what, std::size_t material) { return what + " of material " + std::to_string(material); }
+
 // Without a prior left-out samples are not asked, and all bases stay.
 PriorChoice choose_prior_and_bases(const Observations& observations, const LumitexelList& members, const MaterialModel& material,
-                                   const FitOptions& options, bool shrinks, std::vector<Brdf>& basis) {
+                                   const FitOptions& options, bool shrinks, std::size_t index, std::vector<Brdf>& basis,
+                                   std::vector<Choice>& choices) {
   if (!shrinks || options.plain_projection) return prior_for(observations, members, basis, material, options);
   const BasesChoice choice = choose_bases(observations, members, basis, material.error, options.precision);
+  if (choice.gain) {
+    choices.push_back({with_material("bases", index), std::to_string(basis.size()), std::to_string(1 + kVariations), *choice.gain,
+                       choice.bases == basis.size()});
+  }
   basis.resize(choice.bases);
   return choice.prior;
 }
@@ -76,7 +83,7 @@ std::vector<TexelWeights> project_all(const Observations& observations, const Cl
   progress.begin("texel weights", static_cast<std::int64_t>(model.materials.size()), "materials");
   for (std::size_t j = 0; j < members.size(); ++j) {
     const MaterialModel& material = clustering.materials[j].model;
-    summary.prior.push_back(choose_prior_and_bases(observations, members[j], material, options, shrinks, model.materials[j].basis));
+    summary.prior.push_back(choose_prior_and_bases(observations, members[j], material, options, shrinks, j, model.materials[j].basis, summary.choices));
     summary.bases_by_material.push_back(model.materials[j].basis.size());
     const TexelPrior prior = summary.prior.back().prior;
     const TexelBasis basis(model.materials[j].basis, material.brdf, material.error, options.precision);
@@ -93,7 +100,7 @@ std::vector<TexelWeights> project_all(const Observations& observations, const Cl
 
 // Each material's basis moved by principal function analysis, if lumitexels that it was not learnt from are then predicted better. The
 // paper moves it always.
-void move_bases(const Observations& observations, const Clustering& clustering, const FitOptions& options, const FitSummary& summary,
+void move_bases(const Observations& observations, const Clustering& clustering, const FitOptions& options, FitSummary& summary,
                 Model& model, Progress& progress) {
   const std::vector<LumitexelList> members = members_of(clustering);
   progress.begin("basis functions", static_cast<std::int64_t>(members.size()), "materials");
@@ -111,9 +118,11 @@ void move_bases(const Observations& observations, const Clustering& clustering, 
     if (!better) {
       LumitexelList learnt, left_out;
       for (std::size_t k = 0; k < members[j].size(); ++k) (k % 2 == 0 ? learnt : left_out).push_back(members[j][k]);
-      const double before = prior_for(observations, left_out, basis, material, options).left_out_error;
-      const double after = prior_for(observations, left_out, moved(learnt), material, options).left_out_error;
-      better = after < (1.0 - kLeastBasisGain) * before;
+      const PriorChoice before = prior_for(observations, left_out, basis, material, options);
+      const PriorChoice after = prior_for(observations, left_out, moved(learnt), material, options);
+      const Gain gain = gain_of(after.by_texel, before.by_texel);
+      better = worth_having(gain);
+      summary.choices.push_back({with_material("basis functions", j), "moved", "as found", gain, better});
     }
     if (better) basis = moved(members[j]);
     progress.update(static_cast<std::int64_t>(j + 1));
@@ -170,6 +179,7 @@ Reflectance fit_reflectance(const FitInputs& inputs, const MaterialsBefore& befo
   summary.texels_by_material.clear();
   timer.begin("materials" + pass);
   result.clustering = learn_materials(observations, options, error, before, progress);
+  summary.choices = result.clustering.choices;
   summary.errors = result.clustering.errors;
   summary.family = result.clustering.fit.family;
   summary.lobe_shapes = result.clustering.fit.shared_shape ? LobeShapes::Shared : LobeShapes::Separate;

@@ -176,6 +176,18 @@ std::string bases_line(const FitSettings& settings, const FitSummary& summary) {
               summary.bases_by_material.size());
 }
 
+// One a line: what the choice was, and how clear.
+std::string choices_table(const FitSummary& summary) {
+  if (summary.choices.empty()) return "";
+  std::string text = "What left-out samples said (gain: share of their error, +- standard error)\n";
+  for (const Choice& choice : summary.choices) {
+    const std::string title = choice.of + ": " + choice.candidate + " over " + choice.before;
+    text += line("  %-50s %7.2f +- %.2f %%  %s\n", title.c_str(), 100.0 * choice.gain.share, 100.0 * choice.gain.sigma,
+                 choice.taken ? "taken" : "not taken");
+  }
+  return text;
+}
+
 std::string normals_line(const FitSummary& summary) {
   if (!summary.normals_worth) return "";
   const NormalsWorth& worth = *summary.normals_worth;
@@ -221,6 +233,7 @@ std::string fit_text(const FitSettings& settings, const FitSummary& summary) {
   text += error_line(settings, summary);
   text += lobes_line(settings, summary);
   text += bases_line(settings, summary);
+  text += choices_table(summary);
   text += normals_line(summary);
   text += indirect_line(summary);
   text += rms_table(summary);
