@@ -77,11 +77,11 @@ float material_at(const Model& model, const TexturedPoint& point) {
                         static_cast<std::size_t>(texel.x)];
 }
 
-double blended_sigma(const Model& model, const TexturedPoint& point) {
+double blended(const Image& map, const TexturedPoint& point) {
   double sum = 0.0;
   for (int i = 0; i < point.texel_count; ++i) {
     const TexelShare& texel = point.texels[static_cast<std::size_t>(i)];
-    sum += texel.weight * model.uncertainty.at(texel.x, texel.y);
+    sum += texel.weight * map.at(texel.x, texel.y);
   }
   return sum;
 }
@@ -93,20 +93,11 @@ void write_aov(const ModelSurface& surface, const TexturedPoint& point, Aov aov,
   if (aov == Aov::Position) store(point.position_in_world);
   if (aov == Aov::Cluster) *out = material_at(model, point);
   if (aov == Aov::Samples && point.texel_count > 0) *out = model.samples.at(nearest_texel(point).x, nearest_texel(point).y);
-  if (aov == Aov::Sigma) *out = static_cast<float>(blended_sigma(model, point));
+  if (aov == Aov::Sigma) *out = static_cast<float>(blended(model.uncertainty, point));
+  if (aov == Aov::NormalSigma) *out = static_cast<float>(blended(model.normal_sigma, point));
 }
 
 }  // namespace
-
-Aov aov_from_string(const std::string& name) {
-  constexpr std::pair<const char*, Aov> kNames[] = {{"radiance", Aov::Radiance}, {"normal", Aov::Normal},
-                                                    {"position", Aov::Position}, {"cluster", Aov::Cluster},
-                                                    {"samples", Aov::Samples},   {"sigma", Aov::Sigma}};
-  for (const auto& [known, aov] : kNames) {
-    if (name == known) return aov;
-  }
-  throw BadInput("aov", "'" + name + "'", "radiance, normal, position, cluster, samples or sigma");
-}
 
 RenderedView ViewRenderer::render(const View& view, const RenderOptions& options) const {
   const Model& model = surface_.model();
@@ -142,6 +133,7 @@ RenderedView ViewRenderer::render(const View& view, const RenderOptions& options
 
 Image ViewRenderer::render_aov(const View& view, Aov aov) const {
   if (aov == Aov::Radiance) return render(view, {}).radiance;
+  if (aov == Aov::NormalSigma && !has_normals(model())) throw BadInput("normal-sigma", "a model on its mesh's normals", "a model with fitted normals");
   const Eye eye(view);
   const int channels = aov == Aov::Normal || aov == Aov::Position ? 3 : 1;
   Image image(view.camera.width_px, view.camera.height_px, channels, aov == Aov::Cluster ? kNoMaterial : 0.0f);

@@ -35,8 +35,8 @@ enum class Aov {
   Cluster,   // material of the nearest texel; 65535 where there is none
   Samples,   // how many samples the nearest texel was fitted to
   Sigma,     // one sigma of the texels' reflectance, relative, blended
+  NormalSigma  // one sigma of the texels' normals per tangent axis, radians, blended
 };
-Aov aov_from_string(const std::string& name);  // "radiance", "normal", …; throws BadInput
 
 class ViewRenderer {
  public:

@@ -34,8 +34,8 @@ Json page_data(const ReportSubject& subject) {
 
 std::string report_json(const ReportSubject& subject) { return page_data(subject).dump(1); }
 
-std::string model_report(const ReportSubject& subject, Progress& progress) {
-  const Json data = page_data(subject);
+std::string model_report(const ReportSubject& subject, const std::string& data_json, Progress& progress) {
+  const Json data = Json::parse(data_json);
   const Json& provenance = data.at("provenance");
   const ViewRenderer renderer(subject.model);
   const View view = map_view(subject);
@@ -60,12 +60,13 @@ std::string model_report(const ReportSubject& subject, Progress& progress) {
   body += indirect_section(subject, data.at("light_between_surfaces"), view);
   body += coverage_section(subject.model, renderer, view);
   body += doubt_section(subject, data.at("uncertainty_from"), view);
+  body += choice_section(provenance);
   body += outlier_section(provenance);
   if (subject.session != nullptr) body += setup_section(*subject.session);
   body += exposure_section(subject.exposures);
   if (subject.calibration != nullptr) body += calibration_section(*subject.calibration);
   body += timing_section(provenance) + definitions_section();
-  return html::page(subject.name + " – Lumitexel report", kPageStyle, body, data.dump(1));
+  return html::page(subject.name + " – Lumitexel report", kPageStyle, body, data_json);
 }
 
 }  // namespace lumitexel

@@ -27,10 +27,11 @@ struct ReportSubject {
   std::string viewer{};                    // a section with the interactive view (viewer/viewer_section.h); empty: none
 };
 
-// The page. Every number on it is also in its <script type="application/json" id="data">: {"summary": the sentences on top,
+// Every number of the page, as JSON: {"summary": the sentences on top,
 // "stages": the fit's, "evaluation": as `lumitexel evaluate --json` or null, "provenance": the fit's, "texels_by_material": [texels that were fitted to
 // samples], "coverage": of the texels and their sigma, "uncertainty_from": shares by cause or null, "normals": tilts and sigmas or null, "exposures": a photograph each, "calibration": as `lumitexel calibrate --json` has it or null, "nearest_materials": [three for each material]}.
 std::string report_json(const ReportSubject& subject);
-std::string model_report(const ReportSubject& subject, Progress& progress);
+// The page. data_json: report_json of the same subject, which also goes into its <script type="application/json" id="data">.
+std::string model_report(const ReportSubject& subject, const std::string& data_json, Progress& progress);
 
 }  // namespace lumitexel

@@ -31,6 +31,9 @@ std::string outlier_section(const nlohmann::json& provenance);  // empty for a m
 std::string timing_section(const nlohmann::json& provenance);
 std::string definitions_section();
 
+// ---- what left-out samples said of alternatives (report_choices.cpp)
+std::string choice_section(const nlohmann::json& provenance);  // empty where nothing was asked
+
 // ---- pictures (report_pictures.cpp)
 std::string comparison_section(const ReportSubject& subject, const ViewRenderer& renderer, Progress& progress);
 std::string material_section(const ReportSubject& subject, const ViewRenderer& renderer);

@@ -24,7 +24,8 @@ constexpr double kWhiteFraction = 0.99;  // of the preview: the brightest hundre
 
 std::vector<std::pair<std::string, Aov>> aov_words() {
   return {{"radiance", Aov::Radiance}, {"normal", Aov::Normal}, {"position", Aov::Position},
-          {"cluster", Aov::Cluster},   {"samples", Aov::Samples}, {"sigma", Aov::Sigma}};
+          {"cluster", Aov::Cluster},   {"samples", Aov::Samples}, {"sigma", Aov::Sigma},
+          {"normal-sigma", Aov::NormalSigma}};
 }
 
 View view_of_session(const RenderSettings& settings, Progress& progress) {

@@ -62,11 +62,12 @@ CommandResult report_command(const ReportSettings& settings, CommandContext& con
   }
   if (!settings.without_viewer) subject.viewer = viewer_section(viewer_page(subject.name, model));
   const fs::path out = settings.out.empty() ? fs::path(settings.model) / "report.html" : fs::path(settings.out);
-  const std::string page = model_report(subject, context.progress);
+  const std::string data = report_json(subject);
+  const std::string page = model_report(subject, data, context.progress);
   write_whole_file(out, page);
 
   CommandResult result;
-  result.json = nlohmann::json::parse(report_json(subject));
+  result.json = nlohmann::json::parse(data);
   result.json.update({{"out", out.string()}, {"bytes", page.size()}});
   result.text =
       out.string() + ": open it in a browser (" + std::to_string(page.size() / 1024) + " KiB, works offline)\n";

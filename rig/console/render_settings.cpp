@@ -138,7 +138,7 @@ void add_render_options(CLI::App& command, RenderSettings& settings) {
                      "single (one BRDF for all), cluster (one a material), projection (a mixture a texel), pfa (of "
                      "principal functions, if "
                      "the fit sought them) or normal (on fitted normals); default: all that the model holds");
-  command.add_option("--aov", settings.aov, "radiance, normal, position, cluster, samples or sigma")
+  command.add_option("--aov", settings.aov, "radiance, normal, position, cluster, samples, sigma (of reflectance, relative) or normal-sigma (per axis, radians; of a model with fitted normals)")
       ->capture_default_str();
   add_quality_options(command, settings);
   command.add_flag("--splat", settings.splat,

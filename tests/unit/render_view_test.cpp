@@ -190,7 +190,11 @@ TEST(RenderView, MapsOfTheModelAreSeenThroughTheCamera) {
   EXPECT_EQ(samples.at(4, 4), 9.0f);
   EXPECT_EQ(samples.at(0, 0), 0.0f);
   EXPECT_NEAR(sigma.at(4, 4), 0.75, kRounding);  // x = 0.25: a quarter of the way past the middle between the texels
-  EXPECT_BAD_INPUT(aov_from_string("depth"), "aov", "depth");
+  EXPECT_BAD_INPUT(renderer.render_aov(view, Aov::NormalSigma), "normal-sigma", "fitted normals");
+  model.before_normals = ReflectanceLayer{};
+  model.normal_sigma = Image(2, 1, 1);
+  model.normal_sigma.data = {0.02f, 0.04f};
+  EXPECT_NEAR(renderer.render_aov(view, Aov::NormalSigma).at(4, 4), 0.035, kRounding);
 }
 
 TEST(RenderView, ALightOfAnotherNumberOfChannelsIsRefused) {

@@ -51,7 +51,7 @@ class ModelReport : public testing::Test {
       subject.calibration = &calibration_;
       subject.exposures = exposures_;
     }
-    return model_report(subject, progress);
+    return model_report(subject, report_json(subject), progress);
   }
 
   const TemporaryFolder folder_;
@@ -94,6 +94,22 @@ TEST_F(ModelReport, NamesFromFilesCannotBecomeMarkup) {
   EXPECT_EQ(data.at("texels_by_material"), nlohmann::json::array({16}));
 }
 
+TEST_F(ModelReport, SaysWhatLeftOutSamplesDecided) {
+  EXPECT_THAT(page(false), Not(HasSubstr("What the samples decided")));
+  auto provenance = nlohmann::json::parse(model_.provenance_json);
+  provenance["choices"] = {{{"of", "bases of material 3"}, {"candidate", "7"}, {"over", "3"}, {"gain", 0.0123}, {"gain_sigma", 0.0045}, {"taken", true}}};
+  provenance["normals_worth"] = {{"deviance_gain", 0.237}, {"deviance_gain_sigma", 0.0677}, {"left_out_samples", 51008}};
+  provenance["normals"] = "fitted";
+  model_.provenance_json = provenance.dump();
+  const std::string html = page(false);
+  EXPECT_THAT(html, HasSubstr("What the samples decided"));
+  EXPECT_THAT(html, HasSubstr("bases of material 3"));
+  EXPECT_THAT(html, HasSubstr("7 over 3"));
+  EXPECT_THAT(html, HasSubstr("1.2 %"));
+  EXPECT_THAT(html, HasSubstr("± 0.45 %"));
+  EXPECT_THAT(html, HasSubstr("0.237 ± 0.0677"));
+}
+
 TEST_F(ModelReport, CoverageCountsOnlyTexelsThatWereMeasured) {
   model_.samples.data = {0, 0, 0, 0, 0, 0, 2, 2, 4, 4, 4, 4, 4, 4, 4, 9};  // six texels borrow
   model_.uncertainty.data.assign(16, 1.0f);
@@ -118,7 +134,7 @@ TEST_F(ModelReport, NamesTheNearestKnownMaterialAndSaysHowNearItIs) {
   ReportSubject subject{"bird", model_};
   subject.known = known;
   subject.known_source = "the blackboard & chalk database";
-  const std::string html = model_report(subject, progress);
+  const std::string html = model_report(subject, report_json(subject), progress);
   EXPECT_THAT(html, HasSubstr("hardly to be told apart"));
   EXPECT_THAT(html, HasSubstr("same (0)"));
   EXPECT_THAT(html, HasSubstr("beside the 2 of the blackboard &amp; chalk database"));

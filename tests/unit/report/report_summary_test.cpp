@@ -58,7 +58,7 @@ class ReportSummary : public testing::Test {
     evaluation_ = evaluate_model(model_, session_, progress);
     const ReportSubject subject{"bird", model_, &session_, &evaluation_};
     summary_ = Json::parse(report_json(subject)).at("summary");
-    return model_report(subject, progress);
+    return model_report(subject, report_json(subject), progress);
   }
 
   const TemporaryFolder folder_;

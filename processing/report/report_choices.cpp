@@ -1,0 +1,47 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "processing/report/html.h"
+#include "processing/report/report_sections.h"
+
+namespace lumitexel {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string percent(double share) { return html::number(100.0 * share, 2) + " %"; }
+
+std::vector<std::string> choice_row(const Json& choice) {
+  return {choice.value("of", "?"),
+          choice.value("candidate", "?") + " over " + choice.value("over", "?"),
+          percent(choice.value("gain", NAN)),
+          "± " + percent(choice.value("gain_sigma", NAN)),
+          choice.value("taken", false) ? "taken" : "not taken"};
+}
+
+std::string normals_sentence(const Json& provenance) {
+  const Json worth = provenance.value("normals_worth", Json());
+  if (!worth.is_object()) return "";
+  return "<p>Normals of the texels' own: photographs left out for it are predicted better by " + html::number(worth.value("deviance_gain", NAN)) +
+         " ± " + html::number(worth.value("deviance_gain_sigma", NAN)) + " of deviance a sample; " +
+         (provenance.value("normals", "") == "fitted" ? "they were fitted." : "the mesh's were kept.") + "</p>";
+}
+
+}  // namespace
+
+std::string choice_section(const Json& provenance) {
+  const Json choices = provenance.value("choices", Json::array());
+  std::vector<std::vector<std::string>> rows;
+  for (const Json& choice : choices) rows.push_back(choice_row(choice));
+  const std::string normals = normals_sentence(provenance);
+  if (rows.empty() && normals.empty()) return "";
+  const std::string table = rows.empty() ? "" : html::table({"choice", "candidate", "gain", "one sigma", "outcome"}, rows);
+  return html::section("What the samples decided",
+                       "Where the fit could go more than one way, samples or photographs that were left out of it were predicted both ways. The gain is "
+                       "by how much the candidate errs less, as a share of the other's error. Richer models have to gain half a percent and two sigmas; "
+                       "estimated errors, which make the more exact fits, may also lose next to nothing. Sigmas take surface points as independent, "
+                       "which neighbours are not: they are rather too small.",
+                       table + normals);
+}
+
+}  // namespace lumitexel
