@@ -5,7 +5,7 @@
 
 namespace lumitexel {
 
-std::optional<FittedNormals> seek_normals(const CalibratedSession& session, const FitInputs& inputs, const Clustering& materials,
+std::optional<SoughtNormals> seek_normals(const CalibratedSession& session, const FitInputs& inputs, const Clustering& materials,
                                           const Model& model, FitSummary& summary, StageTimer& timer, Progress& progress) {
   const FitOptions& options = inputs.options;
   if (options.normals == NormalChoice::Mesh) return {};
@@ -25,11 +25,7 @@ std::optional<FittedNormals> seek_normals(const CalibratedSession& session, cons
                                      options.normal_fit, [&](int step) { progress.update(step); });
   summary.normal_sigma_scale =
       normal_sigma_scale(session, inputs.lumitexels, inputs.atlas.width, bases, materials.label, median, options.normal_fit);
-  // Nobody knows less than the prior: where samples say nothing it is what is left, and no disagreement of theirs widens it.
-  for (float& sigma : fitted.sigma_rad) {
-    sigma = static_cast<float>(std::min(*summary.normal_sigma_scale * static_cast<double>(sigma), options.normal_fit.prior.coarse_sigma_rad));
-  }
-  return fitted;
+  return SoughtNormals{std::move(fitted.normal), widened(fitted.sigma, *summary.normal_sigma_scale, options.normal_fit.prior)};
 }
 
 void keep_before_normals(Model& model, FitSummary& summary) {

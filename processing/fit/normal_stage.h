@@ -7,9 +7,14 @@
 
 namespace lumitexel {
 
+struct SoughtNormals {
+  std::vector<Eigen::Vector3d> normal;  // of each lumitexel, in world, unit
+  std::vector<float> sigma_rad;         // one sigma per tangent axis
+};
+
 // By the model's materials and bases. Nothing where options say so or where left-out photographs do not ask for it; what they said goes into
 // the summary.
-std::optional<FittedNormals> seek_normals(const CalibratedSession& session, const FitInputs& inputs, const Clustering& materials,
+std::optional<SoughtNormals> seek_normals(const CalibratedSession& session, const FitInputs& inputs, const Clustering& materials,
                                           const Model& model, FitSummary& summary, StageTimer& timer, Progress& progress);
 
 // What stands in the model so far becomes its stages before normals.

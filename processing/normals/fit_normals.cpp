@@ -23,7 +23,7 @@ FittedNormals fit_normals(const DirectedLumitexels& lumitexels, const Neighbours
   const std::vector<NormalMaterial> materials = normal_materials(bases, lumitexels.channels(), median_reflectance, options);
   const NormalProblem problem{lumitexels, neighbours, materials, label};
   const NormalField field = smooth_normals(problem, field_on_mesh(problem), {options.prior, options.steps}, after_step);
-  return {field.normal, normal_sigmas(problem, field, options.prior)};
+  return {field.normal, options.sigmas ? normal_sigmas(problem, field, options.prior) : NormalSigmas{}};
 }
 
 }  // namespace lumitexel

@@ -15,11 +15,12 @@ struct NormalFitOptions {
   // fit of materials has it, which has to make do with the coarse mesh's normals.
   double relative_error = 0.05, floor_share = 0.05;
   TexelPrior texel{1.0, 1.0};  // wide: a texel whose normal is free must not be forced to explain its colour by it
+  bool sigmas = true;          // wanted: they take about as long as the normals do
 };
 
 struct FittedNormals {
   std::vector<Eigen::Vector3d> normal;  // of each lumitexel, in world, unit
-  std::vector<float> sigma_rad;         // one sigma per tangent axis
+  NormalSigmas sigma;                   // as if samples erred independently: see sigma_scale.h; empty if not wanted
 };
 
 // Materials as the search for normals weighs their samples.

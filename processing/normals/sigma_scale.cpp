@@ -45,9 +45,18 @@ double normal_sigma_scale(const CalibratedSession& session, const LumitexelSet& 
   for (std::size_t i = 0; i < judged.size(); ++i) {
     if (!judged[i]) continue;
     squares += (fitted[0].normal[i] - fitted[1].normal[i]).squaredNorm();
-    for (const FittedNormals& half : fitted) expected += 2.0 * std::pow(static_cast<double>(half.sigma_rad[i]), 2);  // two axes
+    for (const FittedNormals& half : fitted) expected += 2.0 * std::pow(static_cast<double>(half.sigma.samples_rad[i]), 2);  // two axes
   }
   return expected > 0.0 ? std::max(1.0, std::sqrt(squares / expected)) : 1.0;
+}
+
+std::vector<float> widened(const NormalSigmas& sigmas, double scale, const NormalPrior& prior) {
+  std::vector<float> whole(sigmas.samples_rad.size());
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    const double of_samples = scale * static_cast<double>(sigmas.samples_rad[i]), of_prior = static_cast<double>(sigmas.prior_rad[i]);
+    whole[i] = static_cast<float>(std::min(std::hypot(of_samples, of_prior), prior.coarse_sigma_rad));
+  }
+  return whole;
 }
 
 }  // namespace lumitexel

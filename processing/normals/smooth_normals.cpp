@@ -14,7 +14,7 @@ namespace lumitexel {
 namespace {
 
 constexpr double kEdgeFreedom = 4.0;     // of Student's t over differences between neighbours
-constexpr std::uint64_t kPosteriorDraws = 8;  // a sigma from 16 numbers is known to 18 %
+constexpr std::uint64_t kDraws = 8;  // of each part: a sigma from 16 numbers is known to 18 %
 constexpr double kLeastInformation = 1e-6;  // per square radian, so that a lumitexel without samples has a factor, too
 constexpr int kMostCgSteps = 60;
 constexpr double kCgGain = 1e-3;         // of the residual: Gauss-Newton asks for no more
@@ -196,18 +196,26 @@ void take(const LinearSystem& system, const Steps& steps, double largest_rad, No
   });
 }
 
-// A draw of the posterior is what a right side of random numbers with the matrix as covariance solves to.
-Steps random_right(const NormalProblem& problem, const Loops& loops, const LinearSystem& system, const NormalPrior& prior, std::uint64_t seed) {
+using Draw = std::function<double()>;
+
+// Random numbers with the samples' information as covariance.
+Steps samples_right(const LinearSystem& system, const Draw& draw) {
+  Steps right;
+  for (const Eigen::Matrix2d& data : system.data) {
+    const Eigen::LLT<Eigen::Matrix2d> factor(data + kLeastInformation * Eigen::Matrix2d::Identity());
+    right.push_back(factor.matrixL() * Eigen::Vector2d(draw(), draw()));
+  }
+  return right;
+}
+
+// Random numbers with the prior's information as covariance.
+Steps prior_right(const NormalProblem& problem, const Loops& loops, const LinearSystem& system, const NormalPrior& prior, const Draw& draw) {
   const std::size_t n = problem.lumitexels.size();
   const double coarse = 1.0 / prior.coarse_sigma_rad;
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
-  const auto draw = [&] { return normal(random); };
   std::vector<Eigen::Vector3d> pull(n, Eigen::Vector3d::Zero());
   Steps right(n);
   for (std::size_t i = 0; i < n; ++i) {
-    const Eigen::LLT<Eigen::Matrix2d> factor(system.data[i] + kLeastInformation * Eigen::Matrix2d::Identity());
-    right[i] = factor.matrixL() * Eigen::Vector2d(draw(), draw()) + coarse * Eigen::Vector2d(draw(), draw());
+    right[i] = coarse * Eigen::Vector2d(draw(), draw());
     for (std::size_t k = problem.neighbours.first[i]; k < problem.neighbours.first[i + 1]; ++k) {
       const std::size_t j = problem.neighbours.other[k];
       if (j < i) continue;
@@ -222,6 +230,23 @@ Steps random_right(const NormalProblem& problem, const Loops& loops, const Linea
   }
   for (std::size_t i = 0; i < n; ++i) right[i] += system.frame[i].transpose() * pull[i];
   return right;
+}
+
+// Rms over draws and axes of what the system solves right sides to.
+template <typename RightSide>
+std::vector<float> drawn_sigmas(const NormalProblem& problem, const Loops& loops, LinearSystem& system, std::uint64_t first_seed,
+                                RightSide right_side) {
+  std::vector<double> squares(problem.lumitexels.size(), 0.0);
+  for (std::uint64_t k = 0; k < kDraws; ++k) {
+    std::mt19937_64 random(first_seed + k);
+    std::normal_distribution<double> normal;
+    system.right = right_side([&] { return normal(random); });
+    const Steps steps = solve(problem, loops, system);
+    for (std::size_t i = 0; i < steps.size(); ++i) squares[i] += steps[i].squaredNorm() / (2.0 * kDraws);
+  }
+  std::vector<float> sigmas(squares.size());
+  for (std::size_t i = 0; i < squares.size(); ++i) sigmas[i] = static_cast<float>(std::sqrt(squares[i]));
+  return sigmas;
 }
 
 }  // namespace
@@ -246,17 +271,14 @@ void follow_with_weights(const NormalProblem& problem, NormalField& field) {
   });
 }
 
-std::vector<float> normal_sigmas(const NormalProblem& problem, const NormalField& field, const NormalPrior& prior) {
+NormalSigmas normal_sigmas(const NormalProblem& problem, const NormalField& field, const NormalPrior& prior) {
   const Loops loops(problem);
   LinearSystem system = linearise(problem, loops, field, prior);
-  std::vector<double> squares(problem.lumitexels.size(), 0.0);
-  for (std::uint64_t draw = 0; draw < kPosteriorDraws; ++draw) {
-    system.right = random_right(problem, loops, system, prior, draw);
-    const Steps steps = solve(problem, loops, system);
-    for (std::size_t i = 0; i < steps.size(); ++i) squares[i] += steps[i].squaredNorm() / (2.0 * kPosteriorDraws);
-  }
-  std::vector<float> sigmas(squares.size());
-  for (std::size_t i = 0; i < squares.size(); ++i) sigmas[i] = static_cast<float>(std::sqrt(squares[i]));
+  const auto of_samples = [&](const Draw& draw) { return samples_right(system, draw); };
+  const auto of_prior = [&](const Draw& draw) { return prior_right(problem, loops, system, prior, draw); };
+  NormalSigmas sigmas;
+  sigmas.samples_rad = drawn_sigmas(problem, loops, system, 0, of_samples);
+  sigmas.prior_rad = drawn_sigmas(problem, loops, system, kDraws, of_prior);
   return sigmas;
 }
 

@@ -37,8 +37,13 @@ NormalField smooth_normals(const NormalProblem& problem, NormalField start, cons
 // What is minimised.
 double normal_objective(const NormalProblem& problem, const NormalField& field, const NormalPrior& prior);
 
-// One sigma of each normal per tangent axis, radians: from draws of the posterior about the field as the linearised problem has it, the
-// same draws every time.
-std::vector<float> normal_sigmas(const NormalProblem& problem, const NormalField& field, const NormalPrior& prior);
+// One sigma of each normal per tangent axis, radians, in its two parts: what the samples' errors do to it, and what the prior leaves open
+// where samples say little. Both are independent: the whole is the root of their squares' sum.
+struct NormalSigmas {
+  std::vector<float> samples_rad, prior_rad;
+};
+// From draws about the field as the linearised problem has it, the same draws every time. With H = J + P, the samples' information and the
+// prior's, a draw of either part is what H solves a right side to whose covariance is J or P; together they are draws of the posterior.
+NormalSigmas normal_sigmas(const NormalProblem& problem, const NormalField& field, const NormalPrior& prior);
 
 }  // namespace lumitexel
