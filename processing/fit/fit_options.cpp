@@ -9,6 +9,7 @@ namespace lumitexel {
 const char* to_string(NormalChoice choice) {
   switch (choice) {
     case NormalChoice::Fitted: return "fitted";
+    case NormalChoice::Texel: return "texel";
     case NormalChoice::Mesh: return "mesh";
     case NormalChoice::Auto: break;
   }
@@ -19,14 +20,17 @@ FitOptions FitOptions::preset(const std::string& quality) {
   FitOptions options;
   options.quality = quality;
   if (quality == "draft") {
-    options.learning_lumitexels = options.final_lumitexels = 2000;
+    options.final_lumitexels = 2000;
     options.interreflections.rounds = 1;
   } else if (quality == "standard") {
-    options.learning_lumitexels = 10000;
     options.final_lumitexels = 5000;
     options.interreflections.rounds = 2;
   } else if (quality == "reference") {
-    options.learning_lumitexels = options.final_lumitexels = std::numeric_limits<std::size_t>::max() / 2;
+    options.learning_lumitexels = 50000;  // the others judge choices
+    options.final_lumitexels = std::numeric_limits<std::size_t>::max() / 2;
+    options.family.reset();
+    options.lobe_shapes = LobeShapes::Auto;
+    options.most_lobes = 3;
     options.interreflections.rounds = 4;
     options.interreflections.light.paths = 16;
   } else {
@@ -37,6 +41,8 @@ FitOptions FitOptions::preset(const std::string& quality) {
 
 FitOptions as_published(FitOptions options) {
   options.method = FitMethod::Paper;
+  options.family = BrdfFamily::Lafortune;
+  options.most_lobes = 1;
   options.lobe_shapes = LobeShapes::Separate;
   options.normals = NormalChoice::Mesh;
   options.interreflections.wanted = false;

@@ -17,10 +17,10 @@ enum class FitMethod {
   Paper       // as published (paper_clustering.h), with the plain projection
 };
 
-// Fitted: normals finer than the mesh's (section 9 of the paper), then everything once more. Auto: where left-out photographs are then
-// predicted better (normals_worth.h).
-enum class NormalChoice { Auto, Fitted, Mesh };
-const char* to_string(NormalChoice choice);  // "auto", "fitted", "mesh"
+// Fitted: normals finer than the mesh's, of all lumitexels together, then everything once more. Auto: where left-out photographs are then
+// predicted better (normals_worth.h). Texel: as Fitted, but each lumitexel by its own samples alone, as section 9 of the paper has it.
+enum class NormalChoice { Auto, Fitted, Texel, Mesh };
+const char* to_string(NormalChoice choice);  // "auto", "fitted", "texel", "mesh"
 
 // Whether light between the object's surfaces is sought (interreflection_stage.h), and how.
 struct InterreflectionOptions {
@@ -35,14 +35,14 @@ struct FitOptions {
   LayoutOptions layout;
   int materials = 4;                        // 0: as many as the samples ask for
   std::optional<BrdfFamily> family = BrdfFamily::Lafortune;  // none: whichever predicts left-out samples best
-  int most_lobes = 1;                       // each must be asked for by the samples; with the paper's method it is the number
+  int most_lobes = 2;                       // each must be asked for by the samples; with the paper's method it is the number
   bool principal_functions = false;         // tried for each material, and kept where left-out lumitexels are predicted better
   NormalChoice normals = NormalChoice::Auto;
   NormalFitOptions normal_fit;
   InterreflectionOptions interreflections;
   ErrorSource errors = ErrorSource::Auto;
   double intensity_weight = 0.3;            // s of the paper's eq. 6; only the paper's method looks at it
-  std::size_t learning_lumitexels = 10000;  // that the materials are learnt on
+  std::size_t learning_lumitexels = 2000;   // that the materials are learnt on
   std::size_t final_lumitexels = 5000;      // of its own that each material is fitted to at the end
   LobeShapes lobe_shapes = LobeShapes::Shared;  // of a material's channels
   int bases = 0;                            // at most so many BRDFs that a material's texels mix; 0: no more than predict left-out samples better
@@ -52,11 +52,11 @@ struct FitOptions {
   // reflectance under everything. Both found on held-out photographs of two sessions; see the README.
   double relative_error = 0.3, error_floor_share = 0.3;
 
-  // Learning and final lumitexels. draft: 2,000, 2,000; standard: 10,000, 5,000; reference: all. Rounds of light between surfaces: 1, 2, 4. Throws BadInput on any other name.
+  // What they are is the README's table of presets. Throws BadInput on a name other than draft, standard or reference.
   static FitOptions preset(const std::string& quality);
 };
 
-// The paper's method, complete and exactly as published: each channel a lobe of its own, least squares, principal functions always moved.
+// The paper's method, complete and exactly as published: each channel one lobe of its own, least squares, principal functions always moved.
 FitOptions as_published(FitOptions options);
 
 }  // namespace lumitexel

@@ -8,6 +8,8 @@ namespace lumitexel {
 std::optional<SoughtNormals> seek_normals(const CalibratedSession& session, const FitInputs& inputs, const Clustering& materials,
                                           const Model& model, FitSummary& summary, StageTimer& timer, Progress& progress) {
   const FitOptions& options = inputs.options;
+  NormalFitOptions normal_fit = options.normal_fit;
+  if (options.normals == NormalChoice::Texel) normal_fit.prior = NormalPrior::alone();
   if (options.normals == NormalChoice::Mesh) return {};
   const std::vector<std::vector<Brdf>> bases = bases_of(model);
   const double median = median_reflectance(inputs.observations);
@@ -19,13 +21,13 @@ std::optional<SoughtNormals> seek_normals(const CalibratedSession& session, cons
     if (!summary.normals_worth->enough()) return {};
   }
   timer.begin("normals");
-  progress.begin("normals", options.normal_fit.steps, "steps");
+  progress.begin("normals", normal_fit.steps, "steps");
   const DirectedLumitexels lumitexels(session, inputs.lumitexels);
   FittedNormals fitted = fit_normals(lumitexels, lumitexel_neighbours(lumitexels, inputs.atlas.width), bases, materials.label, median,
-                                     options.normal_fit, [&](int step) { progress.update(step); });
+                                     normal_fit, [&](int step) { progress.update(step); });
   summary.normal_sigma_scale =
-      normal_sigma_scale(session, inputs.lumitexels, inputs.atlas.width, bases, materials.label, median, options.normal_fit);
-  return SoughtNormals{std::move(fitted.normal), widened(fitted.sigma, *summary.normal_sigma_scale, options.normal_fit.prior)};
+      normal_sigma_scale(session, inputs.lumitexels, inputs.atlas.width, bases, materials.label, median, normal_fit);
+  return SoughtNormals{std::move(fitted.normal), widened(fitted.sigma, *summary.normal_sigma_scale, normal_fit.prior)};
 }
 
 void keep_before_normals(Model& model, FitSummary& summary) {

@@ -12,32 +12,25 @@ namespace {
 constexpr const char* kReferenceSetting = "reference";
 constexpr const char* kPaperSetting = "paper";
 
-// 10,000 learning lumitexels, one Lafortune lobe of one shape for all channels, errors and normals by left-out samples, light
-// between surfaces taken out and all views are the standard preset itself.
+// What a setting changes is stated against the standard preset, which is in the list itself.
 std::vector<TradeoffSetting> all_settings(int materials) {
   std::vector<TradeoffSetting> settings;
-  const auto add = [&](const std::string& name, const std::string& what, const std::string& quality = "standard") -> TradeoffSetting& {
+  const auto add = [&](const std::string& name, const std::string& what, const std::string& quality = kStandardSetting) -> TradeoffSetting& {
     settings.push_back({name, what, FitOptions::preset(quality)});
     settings.back().options.materials = materials;
     return settings.back();
   };
-  add("draft", "draft preset: learnt on 2,000 points", "draft");
-  for (const std::size_t learning : {1000u, 2000u, 5000u}) {
+  add("draft", "draft preset: materials fitted to 2,000 points each, light between surfaces predicted once", "draft");
+  add(kStandardSetting, "standard preset: learnt on 2,000 points, up to two Lafortune lobes, all views");
+  for (const std::size_t learning : {500u, 1000u, 5000u, 10000u}) {
     const std::string number = std::to_string(learning);
     add("learning-" + number, "materials learnt on " + number + " points").options.learning_lumitexels = learning;
   }
-  add(kStandardSetting, "standard preset: 10,000 points, one Lafortune lobe, all views");
+  if (materials != 0) add("materials-auto", "as many materials as the samples ask for").options.materials = 0;
   add("principal", "basis functions moved where that predicts better").options.principal_functions = true;
   add("errors-given", "30 % errors everywhere, nothing estimated").options.errors = ErrorSource::Given;
-  add("lobes-2", "up to two lobes a material").options.most_lobes = 2;
+  add("lobes-1", "no more than one lobe a material").options.most_lobes = 1;
   add("lobes-3", "up to three lobes a material").options.most_lobes = 3;
-  add("draft-lobes-2", "draft preset with up to two lobes a material", "draft").options.most_lobes = 2;
-  for (const std::size_t learning : {2000u, 5000u}) {
-    const std::string number = std::to_string(learning);
-    FitOptions& options = add("learning-" + number + "-lobes-2", number + " points, up to two lobes a material").options;
-    options.learning_lumitexels = learning;
-    options.most_lobes = 2;
-  }
   add("ggx", "GGX lobes").options.family = BrdfFamily::Ggx;
   add("family-auto", "lobes of the family that predicts best").options.family.reset();
   add("lobe-shapes-auto", "a lobe shape for each channel where that predicts better").options.lobe_shapes = LobeShapes::Auto;

@@ -28,6 +28,9 @@ struct NormalPrior {
   double coarse_sigma_rad = 0.07;     // of the deviation from the coarse mesh's normal, per axis
   double neighbour_sigma_rad = 0.14;  // of the difference between neighbours' deviations, per axis
   double curl_sigma_rad = 0.012;     // of the height gained around a loop over the mean length of its sides
+
+  // Each lumitexel by itself: neither neighbours nor loops count, and the mesh only keeps those without samples where they are.
+  static NormalPrior alone() { return {1.0, 1e3, 1e3}; }
 };
 
 }  // namespace lumitexel

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "drivers/error.h"
 #include "processing/brdf/material_basis.h"
@@ -16,11 +17,12 @@ namespace lumitexel {
 namespace {
 
 struct FitSettings {
-  std::string session, out, quality = "standard", materials = "4", method = "lumitexel", family = "lafortune", errors = "auto", bases = "auto", precision = "double";
-  int lobes = 1;
+  std::string session, out, quality = "standard", method = "lumitexel", errors = "auto", bases = "auto", precision = "double";
+  std::string materials, family, lobe_shapes, normals, interreflections;  // empty: as quality and method have it
+  std::optional<int> lobes;
   double intensity_weight = 0.3;
   bool plain_projection = false, principal_functions = false;
-  std::string lobe_shapes, normals, interreflections, layout = "auto";
+  std::string layout = "auto";
   int atlas_size = 0;
 };
 
@@ -41,7 +43,7 @@ Words<ErrorSource> error_words() {
   return words_by_to_string(std::vector{ErrorSource::Auto, ErrorSource::Given, ErrorSource::Labels, ErrorSource::Estimated});
 }
 
-Words<NormalChoice> normal_words() { return words_by_to_string(std::vector{NormalChoice::Auto, NormalChoice::Fitted, NormalChoice::Mesh}); }
+Words<NormalChoice> normal_words() { return words_by_to_string(std::vector{NormalChoice::Auto, NormalChoice::Fitted, NormalChoice::Texel, NormalChoice::Mesh}); }
 Words<LayoutChoice> layout_words() {
   return words_by_to_string(std::vector{LayoutChoice::Auto, LayoutChoice::Photographs, LayoutChoice::Mesh});
 }
@@ -53,39 +55,40 @@ int bases_wanted(const std::string& word) {
   return named_value("--bases", word, words);
 }
 
+// The paper's method has no such options, or none to choose.
+void require_options_of_the_paper(const FitSettings& settings, const FitOptions& options) {
+  const std::string with_paper = " with --method paper";
+  if (options.materials == 0) throw BadInput("--materials", "auto" + with_paper, "a number: the paper does not choose it");
+  if (options.family != BrdfFamily::Lafortune) throw BadInput("--family", settings.family + with_paper, "lafortune");
+  if (options.bases != 0) throw BadInput("--bases", settings.bases + with_paper, "no such option: the paper's are all");
+  if (options.precision != Precision::Double) throw BadInput("--precision", settings.precision + with_paper, "double");
+  if (!settings.lobe_shapes.empty()) throw BadInput("--lobe-shapes", settings.lobe_shapes + with_paper, "no such option: the paper's are separate");
+  if (options.errors != ErrorSource::Auto) throw BadInput("--errors", settings.errors + with_paper, "no such option");
+}
+
 FitOptions fit_options(const FitSettings& settings) {
   FitOptions options = FitOptions::preset(named_value("--quality", settings.quality, quality_words()));
-  options.materials = materials_wanted("--materials", settings.materials);
-  options.method = named_value("--method", settings.method, method_words());
-  options.family = named_value("--family", settings.family, family_words());
+  const bool paper = named_value("--method", settings.method, method_words()) == FitMethod::Paper;
+  if (paper) options = as_published(options);
+  if (!settings.materials.empty()) options.materials = materials_wanted("--materials", settings.materials);
+  if (!settings.family.empty()) options.family = named_value("--family", settings.family, family_words());
+  if (settings.lobes) options.most_lobes = *settings.lobes;
+  if (!settings.lobe_shapes.empty()) options.lobe_shapes = named_value("--lobe-shapes", settings.lobe_shapes, shape_words());
+  if (!settings.normals.empty()) options.normals = named_value("--normals", settings.normals, normal_words());
+  if (!settings.interreflections.empty()) {
+    options.interreflections.wanted = named_value<bool>("--interreflections", settings.interreflections, {{"auto", true}, {"off", false}});
+  }
   options.errors = named_value("--errors", settings.errors, error_words());
   options.layout = {named_value("--layout", settings.layout, layout_words()), settings.atlas_size};
   if (settings.atlas_size > 0 && options.layout.choice != LayoutChoice::Mesh) {
     throw BadInput("--atlas-size", std::to_string(settings.atlas_size) + " without --layout mesh", "--layout mesh");
   }
-  options.most_lobes = settings.lobes;
   options.intensity_weight = settings.intensity_weight;
-  options.principal_functions = settings.principal_functions;
-  if (!settings.lobe_shapes.empty()) options.lobe_shapes = named_value("--lobe-shapes", settings.lobe_shapes, shape_words());
   options.bases = bases_wanted(settings.bases);
   options.precision = named_value<Precision>("--precision", settings.precision, words_by_to_string(std::vector{Precision::Double, Precision::Float}));
-  options.plain_projection = settings.plain_projection;
-  const std::string normals = settings.normals.empty() ? (options.method == FitMethod::Paper ? "mesh" : "auto") : settings.normals;
-  options.normals = named_value("--normals", normals, normal_words());
-  const std::string between = settings.interreflections.empty() ? (options.method == FitMethod::Paper ? "off" : "auto") : settings.interreflections;
-  options.interreflections.wanted = named_value<bool>("--interreflections", between, {{"auto", true}, {"off", false}});
-  if (options.method == FitMethod::Paper) {
-    if (options.materials == 0) throw BadInput("--materials", "auto with --method paper", "a number: the paper does not choose it");
-    if (options.family != BrdfFamily::Lafortune) throw BadInput("--family", settings.family + " with --method paper", "lafortune");
-    if (options.bases != 0) throw BadInput("--bases", settings.bases + " with --method paper", "no such option: the paper's are all");
-    if (options.precision != Precision::Double) throw BadInput("--precision", settings.precision + " with --method paper", "double");
-    if (!settings.lobe_shapes.empty()) throw BadInput("--lobe-shapes", settings.lobe_shapes + " with --method paper", "no such option: the paper's are separate");
-    if (options.errors != ErrorSource::Auto) throw BadInput("--errors", settings.errors + " with --method paper", "no such option");
-    FitOptions published = as_published(options);
-    published.normals = options.normals;
-    published.interreflections = options.interreflections;
-    return published;
-  }
+  options.principal_functions |= settings.principal_functions;
+  options.plain_projection |= settings.plain_projection;
+  if (paper) require_options_of_the_paper(settings, options);
   return options;
 }
 
@@ -156,11 +159,11 @@ std::string error_line(const FitSettings& settings, const FitSummary& summary) {
 }
 
 // Only what was left to the samples.
-std::string lobes_line(const FitSettings& settings, const FitSummary& summary) {
+std::string lobes_line(const FitOptions& options, const FitSummary& summary) {
   std::string text;
-  if (settings.lobes == 0) return "";  // nothing was asked
-  if (settings.family == "auto") text += line("lobes: %s, the family that predicted left-out samples best\n", to_string(summary.family));
-  if (settings.lobe_shapes == "auto" && summary.single.by_channel.size() > 1) {
+  if (options.most_lobes == 0) return "";  // nothing was asked
+  if (!options.family) text += line("lobes: %s, the family that predicted left-out samples best\n", to_string(summary.family));
+  if (options.lobe_shapes == LobeShapes::Auto && summary.single.by_channel.size() > 1) {
     text += line("lobe shapes: %s: a shape for each colour channel %s left-out samples better\n", to_string(summary.lobe_shapes),
                  summary.lobe_shapes == LobeShapes::Separate ? "predicted" : "did not predict");
   }
@@ -224,14 +227,14 @@ std::string layout_text(const LayoutSummary& layout) {
   return text;
 }
 
-std::string fit_text(const FitSettings& settings, const FitSummary& summary) {
+std::string fit_text(const FitSettings& settings, const FitOptions& options, const FitSummary& summary) {
   std::string text = line("%s: %zu materials, %zu lumitexels, %zu samples (%.1f a lumitexel; %zu lumitexels have none)\n",
                           settings.out.c_str(), summary.texels_by_material.size(), summary.lumitexels, summary.samples,
                           static_cast<double>(summary.samples) / static_cast<double>(summary.lumitexels), summary.starved);
   if (summary.unseen_triangles > 0) text += line("  %zu triangles are seen by no view\n", summary.unseen_triangles);
   text += layout_text(summary.layout);
   text += error_line(settings, summary);
-  text += lobes_line(settings, summary);
+  text += lobes_line(options, summary);
   text += bases_line(settings, summary);
   text += choices_table(summary);
   text += normals_line(summary);
@@ -256,7 +259,7 @@ CommandResult fit_command(const FitSettings& settings, CommandContext& context) 
   write_model(settings.out, fitted.model);
   CommandResult result;
   result.json = nlohmann::json::parse(fitted.model.provenance_json);
-  result.text = fit_text(settings, fitted.summary);
+  result.text = fit_text(settings, options, fitted.summary);
   return result;
 }
 
@@ -269,19 +272,19 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
   command->add_option("--out", settings->out, "Folder of the model; a model that is there is replaced")->required();
   command->add_option("--quality", settings->quality,
                       "draft: materials learnt on 2,000 surface points and fitted to 2,000 each, light between surfaces predicted once; "
-                      "standard: 10,000 and 5,000, twice; reference: all, up to four times")
+                      "standard: 2,000 and 5,000, twice; reference: 50,000 and all, up to four times, and lobes as the samples ask for")
       ->capture_default_str();
-  command->add_option("--materials", settings->materials, "How many materials to look for, 1 to 64, or auto: as many as the samples ask for, at most 20")->capture_default_str();
+  command->add_option("--materials", settings->materials, "How many materials to look for, 1 to 64, or auto: as many as the samples ask for, at most 20 (default: 4)");
   command->add_option("--method", settings->method,
                       "lumitexel, or paper: clustering, fits and projection as published (Lensch et al. 2003), for comparison")
       ->capture_default_str();
-  command->add_option("--family", settings->family, "Lobes of this family: " + words_of(family_words()) + ": whichever predicts left-out samples best")->capture_default_str();
-  command->add_option("--lobes", settings->lobes, "Most lobes of a material; each must be asked for by its samples")
-      ->check(CLI::Range(0, 3))
-      ->capture_default_str();
+  command->add_option("--family", settings->family, "Lobes of this family: " + words_of(family_words()) + ": whichever predicts left-out samples best (default: lafortune, with --quality reference auto)");
+  command->add_option("--lobes", settings->lobes, "Most lobes of a material; each must be asked for by its samples (default: 2, with --quality reference 3, with --method paper 1, "
+                      "which asks nothing)")
+      ->check(CLI::Range(0, 3));
   command->add_option("--normals", settings->normals,
-                      "fitted: normals finer than the mesh's, from all photographs, and then everything once more on them; mesh: the "
-                      "mesh's own; auto: fitted where photographs left out for it are then predicted better (default: auto, with "
+                      "fitted: normals finer than the mesh's, from all photographs, and then everything once more on them; texel: the same, each texel by "
+                      "its own samples alone, as in the paper; mesh: the mesh's own; auto: fitted where photographs left out for it are then predicted better (default: auto, with "
                       "--method paper mesh)");
   command->add_option("--interreflections", settings->interreflections,
                       "auto: light between the object's own surfaces is predicted and taken out of the samples where it can matter; off "
@@ -307,7 +310,7 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
       ->capture_default_str();
   command->add_option("--lobe-shapes", settings->lobe_shapes,
                       "shared: one lobe shape for all colour channels of a material; separate: one a channel, as in the paper; auto: "
-                      "separate where that predicts left-out samples better (default: shared, with --method paper separate)");
+                      "separate where that predicts left-out samples better (default: shared, with --quality reference auto, with --method paper separate)");
   command->add_option("--bases", settings->bases,
                       "Most BRDFs that a material's texels mix: 1 the material itself; 2 and 3 its variations; up to 8 other materials; "
                       "auto: no more than predict left-out samples better")

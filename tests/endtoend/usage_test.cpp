@@ -80,7 +80,7 @@ TEST(Usage, HelpSaysWhatOptionsTakeAndThatEveryCommandHasJson) {
                               "experiment", "render", "evaluate", "tradeoff", "report", "selftest"}) {
     EXPECT_THAT(help_of(command), HasSubstr("--json")) << command;
   }
-  for (const char* name : {"draft", "learning-2000", "errors-given", "views-8", "reference"}) EXPECT_THAT(help_of("tradeoff"), HasSubstr(name));
+  for (const char* name : {"draft", "learning-5000", "errors-given", "views-8", "reference"}) EXPECT_THAT(help_of("tradeoff"), HasSubstr(name));
   for (const char* name : {"'even, uniform noise'", "'uneven, uniform, 2 % outliers'"}) EXPECT_THAT(help_of("experiment"), HasSubstr(name));
   for (const char* step : {"photon_transfer (", "dark_scale (", "lamp_pattern ("}) EXPECT_THAT(help_of("calibrate"), HasSubstr(step));
 }

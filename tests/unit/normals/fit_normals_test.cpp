@@ -97,6 +97,21 @@ TEST(FitNormals, WhereSamplesSayNothingNeighboursDecideAndSigmaIsWider) {
   EXPECT_GT(std::sqrt(squares_alone), 1.15 * std::sqrt(squares));
 }
 
+// As the paper has it: what its neighbours saw is nothing to a texel.
+TEST(FitNormals, AloneEachTexelGoesByItsOwnSamples) {
+  NormalPatch patch = make_patch({40, 12, 0.07, 0.02, 1});
+  NormalFitOptions options;
+  options.prior = NormalPrior::alone();
+  const FittedNormals all = fit(patch, options);
+  EXPECT_LT(rms_angle(all.normal, patch.truth), 0.5 * rms_angle(mesh_normals(patch), patch.truth));
+  const std::size_t kept = 20 * 40 + 20;
+  drop_samples(patch, kept + 1, patch.truth.size());
+  drop_samples(patch, 0, kept);
+  const FittedNormals one = fit(patch, options);
+  EXPECT_LT(angle_rad(one.normal[kept], all.normal[kept]), 1e-4);  // neighbours still count for a millionth of a sample
+  EXPECT_LT(angle_rad(one.normal[0], Eigen::Vector3d::UnitZ()), 1e-4) << "nothing moves where nobody looked";
+}
+
 TEST(FitNormals, WithoutAnySampleTheMeshStaysAndSigmaIsThePriors) {
   NormalPatch patch = make_patch({12, 6, 0.07, 0.02, 1});
   drop_samples(patch, 0, patch.truth.size());

@@ -95,7 +95,7 @@ TEST(TradeoffSettings, AreTheNamedOnesAndTheReferenceOnlyIfAsked) {
   EXPECT_EQ(tradeoff_settings(7, false, {"paper"}).front().options.materials, 7);
   EXPECT_THAT(names(tradeoff_settings(0, true, {})), testing::Not(testing::Contains("paper")));  // it needs a number
   EXPECT_BAD_INPUT(tradeoff_settings(0, false, {"paper"}), "--materials", "paper");
-  EXPECT_BAD_INPUT(tradeoff_settings(4, false, {"fast"}), "fast", "learning-2000");
+  EXPECT_BAD_INPUT(tradeoff_settings(4, false, {"fast"}), "fast", "learning-5000");
 }
 
 }  // namespace
