@@ -7,7 +7,8 @@
 namespace lumitexel {
 
 // How much less the later of two candidates errs on the same left-out samples, as a share of the earlier one's error; sigma: standard error
-// of the paired difference, the lumitexels taken as independent, which makes it too small where neighbours err alike.
+// that the paired difference would have if in truth there were none (rms about zero: a clear gain widens it, too). The lumitexels are taken
+// as independent, which makes it too small where neighbours err alike.
 struct Gain {
   double share = 0, sigma = 0;
 };

@@ -1,5 +1,7 @@
 #include "processing/brdf/error_choice.h"
 
+#include <cmath>
+
 namespace lumitexel {
 namespace {
 
@@ -19,7 +21,7 @@ Gain gain(const std::vector<SquaredError>& later, const std::vector<SquaredError
 
 bool predicts_better(const std::vector<SquaredError>& later, const std::vector<SquaredError>& earlier) {
   const Gain both = gain(later, earlier);
-  if (both.share <= kStandardErrors * both.sigma) return false;
+  if (!(both.share > kStandardErrors * both.sigma)) return false;
   for (const auto kind : {&SquaredError::clipped, &SquaredError::root}) {
     if (excess_in_standard_errors(values(later, kind), values(earlier, kind)) > kStandardErrors) return false;
   }
@@ -28,8 +30,7 @@ bool predicts_better(const std::vector<SquaredError>& later, const std::vector<S
 
 bool loses_little(const std::vector<SquaredError>& later, const std::vector<SquaredError>& earlier) {
   for (const auto kind : {&SquaredError::clipped, &SquaredError::root}) {
-    const bool little = total_error(later).*kind <= (1.0 + kMostLoss) * total_error(earlier).*kind;
-    if (!little) return false;  // nor what is no number
+    if (total_error(later).*kind > (1.0 + kMostLoss) * total_error(earlier).*kind) return false;
     std::vector<double> allowed = values(earlier, kind);
     for (double& value : allowed) value *= 1.0 + kShare;
     if (excess_in_standard_errors(values(later, kind), allowed) > kStandardErrors) return false;
@@ -37,7 +38,14 @@ bool loses_little(const std::vector<SquaredError>& later, const std::vector<Squa
   return true;
 }
 
+bool is_number(const std::vector<SquaredError>& errors) {
+  const SquaredError total = total_error(errors);
+  return std::isfinite(total.clipped) && std::isfinite(total.root);
+}
+
 bool holds(Claim claim, const std::vector<SquaredError>& later, const std::vector<SquaredError>& earlier) {
+  if (!is_number(later)) return false;
+  if (!is_number(earlier)) return true;
   switch (claim) {
     case Claim::Richer: return gain(later, earlier).share >= kShare && predicts_better(later, earlier);
     case Claim::Efficient: return loses_little(later, earlier) || predicts_better(later, earlier);

@@ -34,7 +34,7 @@ struct Predictor {
 };
 
 // Of mixtures learnt from the same lumitexels and judged by the same others, the most cautious first: the index of the one to keep. A later
-// one takes an earlier one's place where the claim holds. What each comparison said is added to `choices`, as a choice of `of`.
+// one takes an earlier one's place where the claim holds, one that predicts numbers always that of one that does not. What each comparison said is added to `choices`, as a choice of `of`.
 std::size_t best_predictor(const std::string& of, const std::vector<Predictor>& predictors, Claim claim, std::vector<Choice>& choices);
 
 }  // namespace lumitexel

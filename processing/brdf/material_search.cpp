@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kSearchRounds = 24, kRefitRounds = 8;  // of expectation-maximisation
 constexpr double kSearchSettled = 1e-4;              // of log likelihood a sample and round
-constexpr std::size_t kMostJudges = 20'000;         // lumitexels: ten times as many
-constexpr std::size_t kEnoughJudges = 2'000;        // lumitexels: as many as a draft's materials are learnt from
+constexpr std::size_t kMostJudges = 20'000;         // lumitexels: ten times as many as the presets but reference learn from
+constexpr const char *kMaterials = "materials", *kErrors = "errors", *kFamily = "family", *kLobeShapes = "lobe shapes";  // as choices are called
 constexpr int kMostExtra = 8;                        // materials beyond those wanted that splitting may make
 
 // While materials are told apart they all have a lobe: what a matte whole hides, a part may show.
@@ -54,6 +54,19 @@ MaterialSearch with_mean_fits(MaterialSearch search, const Observations& observa
   return search;
 }
 
+// What is asked again counts as it is answered then.
+void forget(const std::string& of, std::vector<Choice>& choices) {
+  std::erase_if(choices, [&](const Choice& choice) { return choice.of == of; });
+}
+
+// The lobes that materials known before have already: both are asked for theirs before they are compared.
+void give_lobes(MaterialSearch& search, const Observations& observations, const LumitexelList& selection, const ClusterOptions& options) {
+  if (search.fit.most_lobes == options.fit.most_lobes) return;
+  search.fit.most_lobes = options.fit.most_lobes;
+  search.fit.choose_lobes = options.fit.choose_lobes;
+  refit(search, observations, selection);
+}
+
 // The number of materials and what they are fitted by stay.
 MaterialSearch adapted(const Clustering& before, const Observations& observations, const LumitexelList& selection, const ClusterOptions& options) {
   MaterialSearch search{before.errors, options.fit, {}, before.choices, {}, true};
@@ -61,6 +74,7 @@ MaterialSearch adapted(const Clustering& before, const Observations& observation
   if (before.fit.mean_fit) search.fit.mean_fit = options.fit.error;
   search.fit.family = before.fit.family;
   search.fit.shared_shape = before.fit.shared_shape;
+  forget(kMaterials, search.choices);
   double members = 0.0;
   for (const FittedMaterial& material : before.materials) members += static_cast<double>(material.members);
   for (const FittedMaterial& material : before.materials) {
@@ -71,12 +85,12 @@ MaterialSearch adapted(const Clustering& before, const Observations& observation
   return search;
 }
 
-// Who have not learnt, if that is enough of them, or as many as have; else the learners themselves.
+// Who have not learnt; where they are fewer than the learners, and most that came near a mirror reflection among these, the learners themselves.
 LumitexelList judges(const Observations& observations, const LumitexelList& selection) {
   const LumitexelList usable = with_samples(observations, kFewestSamples);
   LumitexelList others;
   std::set_difference(usable.begin(), usable.end(), selection.begin(), selection.end(), std::back_inserter(others));
-  return others.size() < std::min(selection.size(), kEnoughJudges) ? selection : thinned(others, kMostJudges);
+  return others.size() < selection.size() ? selection : thinned(others, kMostJudges);
 }
 
 // Of searches that differ in `of`, each called by what `name_of` says of it.
@@ -109,11 +123,11 @@ MaterialSearch found_anew(const Observations& observations, const LumitexelList&
   if (options.errors == ErrorSource::Given || options.errors == ErrorSource::Estimated) return search(options.errors);
   MaterialSearch estimated = search(ErrorSource::Estimated), labels = with_mean_fits(estimated, observations, selection, options);
   if (options.errors == ErrorSource::Labels) return labels;
-  MaterialSearch cautious = best_of("errors", {search(ErrorSource::Given), std::move(labels)}, errors_of, observations, selection, Claim::Better);
+  MaterialSearch cautious = best_of(kErrors, {search(ErrorSource::Given), std::move(labels)}, errors_of, observations, selection, Claim::Better);
   // Labels and estimates tell the same materials apart.
   const Claim claim = cautious.errors == ErrorSource::Labels ? Claim::Efficient : Claim::Better;
   estimated.choices = cautious.choices;
-  return best_of("errors", {std::move(cautious), std::move(estimated)}, errors_of, observations, selection, claim);
+  return best_of(kErrors, {std::move(cautious), std::move(estimated)}, errors_of, observations, selection, claim);
 }
 
 MaterialSearch with_family(MaterialSearch search, BrdfFamily family, const Observations& observations, const LumitexelList& selection) {
@@ -132,17 +146,19 @@ MaterialSearch with_separate_shapes(MaterialSearch search, const Observations& o
 MaterialSearch with_lobes_asked_for(MaterialSearch search, const Observations& observations, const LumitexelList& selection,
                                     const ClusterOptions& options) {
   if (options.fit.most_lobes == 0) return search;
+  forget(kFamily, search.choices);
+  forget(kLobeShapes, search.choices);
   if (options.any_family) {
     std::vector<MaterialSearch> families{std::move(search)};
     for (const BrdfFamily family : {BrdfFamily::Lafortune, BrdfFamily::Ggx, BrdfFamily::Ward}) {
       if (family != families.front().fit.family) families.push_back(with_family(families.front(), family, observations, selection));
     }
-    search = best_of("family", std::move(families), family_of, observations, selection, Claim::Richer);
+    search = best_of(kFamily, std::move(families), family_of, observations, selection, Claim::Richer);
   }
   if (options.lobe_shapes == LobeShapes::Auto && search.fit.shared_shape && observations.channels > 1) {
     std::vector<MaterialSearch> shapes{std::move(search)};
     shapes.push_back(with_separate_shapes(shapes.front(), observations, selection));
-    search = best_of("lobe shapes", std::move(shapes), shapes_of, observations, selection, Claim::Richer);
+    search = best_of(kLobeShapes, std::move(shapes), shapes_of, observations, selection, Claim::Richer);
   }
   return search;
 }
@@ -167,9 +183,11 @@ MaterialSearch search_for_materials(const Observations& observations, const Lumi
   std::vector<MaterialSearch> searches;
   if (options.before.clustering != nullptr) searches.push_back(adapted(*options.before.clustering, observations, selection, options));
   if (searches.empty() || options.before.anew) {
-    searches.push_back(found_anew(observations, selection, options, report));
+    MaterialSearch anew = found_anew(observations, selection, options, report);
+    if (!searches.empty()) give_lobes(anew, observations, selection, options);
+    searches.push_back(std::move(anew));
   }
-  MaterialSearch best = best_of("materials", std::move(searches), origin_of, observations, selection, Claim::Richer);
+  MaterialSearch best = best_of(kMaterials, std::move(searches), origin_of, observations, selection, Claim::Richer);
   const bool known = options.before.clustering != nullptr && !options.before.anew;
   return known ? best : with_lobes_asked_for(std::move(best), observations, selection, options);
 }

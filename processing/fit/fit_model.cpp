@@ -129,7 +129,7 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
     turn(normals->normal, gathered.set);
     look();
     keep_before_normals(model, summary);
-    set_normal_sigma(gathered.set, normals->sigma_rad, options.normal_fit.prior.coarse_sigma_rad, model);
+    set_normal_sigma(gathered.set, *normals, model);
     fit_again(true, " on fitted normals");
   } else if (changed) {
     fit_again(true, " without light between surfaces");

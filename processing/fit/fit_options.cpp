@@ -26,7 +26,7 @@ FitOptions FitOptions::preset(const std::string& quality) {
     options.final_lumitexels = 5000;
     options.interreflections.rounds = 2;
   } else if (quality == "reference") {
-    options.learning_lumitexels = 50000;  // the others judge choices
+    options.learning_lumitexels = 50000;  // where there are twice as many, the others judge choices
     options.final_lumitexels = std::numeric_limits<std::size_t>::max() / 2;
     options.family.reset();
     options.lobe_shapes = LobeShapes::Auto;

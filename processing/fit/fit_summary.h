@@ -34,7 +34,7 @@ struct FitSummary {
   ErrorSource errors = ErrorSource::Given;  // whose error models the materials have, never Auto
   BrdfFamily family = BrdfFamily::Lafortune;     // of the materials' lobes
   LobeShapes lobe_shapes = LobeShapes::Shared;   // never Auto
-  std::vector<Choice> choices;                   // what left-out samples said of alternatives, of the last stage
+  std::vector<Choice> choices;                   // what left-out samples said of alternatives: when each was asked last
   std::vector<std::size_t> texels_by_material, texels_before_normals;  // the second only where normals were fitted
   std::vector<PriorChoice> prior;    // per material, of the last stage
   std::vector<std::size_t> bases_by_material;  // how many BRDFs its texels mix

@@ -24,10 +24,10 @@ std::optional<SoughtNormals> seek_normals(const CalibratedSession& session, cons
   progress.begin("normals", normal_fit.steps, "steps");
   const DirectedLumitexels lumitexels(session, inputs.lumitexels);
   FittedNormals fitted = fit_normals(lumitexels, lumitexel_neighbours(lumitexels, inputs.atlas.width), bases, materials.label, median,
-                                     normal_fit, [&](int step) { progress.update(step); });
+                                     normal_fit, Uncertainty::Sigmas, [&](int step) { progress.update(step); });
   summary.normal_sigma_scale =
       normal_sigma_scale(session, inputs.lumitexels, inputs.atlas.width, bases, materials.label, median, normal_fit);
-  return SoughtNormals{std::move(fitted.normal), widened(fitted.sigma, *summary.normal_sigma_scale, normal_fit.prior)};
+  return SoughtNormals{std::move(fitted.normal), widened(fitted.sigma, *summary.normal_sigma_scale, normal_fit.prior), normal_fit.prior};
 }
 
 void keep_before_normals(Model& model, FitSummary& summary) {
@@ -37,11 +37,11 @@ void keep_before_normals(Model& model, FitSummary& summary) {
   summary.texels_before_normals = summary.texels_by_material;
 }
 
-void set_normal_sigma(const LumitexelSet& lumitexels, const std::vector<float>& sigma_rad, double coarse_sigma_rad, Model& model) {
-  model.normal_sigma = Image(model.width, model.height, 1, static_cast<float>(coarse_sigma_rad));
+void set_normal_sigma(const LumitexelSet& lumitexels, const SoughtNormals& normals, Model& model) {
+  model.normal_sigma = Image(model.width, model.height, 1, static_cast<float>(normals.prior.coarse_sigma_rad));
   std::size_t i = 0;
   for (const LumitexelTile& tile : lumitexels.tiles) {
-    for (const std::uint32_t texel : tile.texel) model.normal_sigma.data[texel] = sigma_rad[i++];
+    for (const std::uint32_t texel : tile.texel) model.normal_sigma.data[texel] = normals.sigma_rad[i++];
   }
 }
 

@@ -52,10 +52,8 @@ class Arm {
 
   FittedNormals normals(const CalibratedSession& session, const LumitexelSet& learnt, const FitInputs& inputs, double median) const {
     const DirectedLumitexels directed(session, learnt);
-    NormalFitOptions options = inputs.options.normal_fit;
-    options.sigmas = false;  // nobody asks
     return fit_normals(directed, lumitexel_neighbours(directed, inputs.atlas.width), bases_of(model_), reflectance_.clustering.label, median,
-                       options);
+                       inputs.options.normal_fit, Uncertainty::None);
   }
 
   // Of sample s of lumitexel i of a tile of the left-out set, i being number `lumitexel` of all.

@@ -31,8 +31,8 @@ json choices_json(const std::vector<Choice>& choices) {
     list.push_back({{"of", choice.of},
                     {"candidate", choice.candidate},
                     {"over", choice.before},
-                    {"gain", choice.gain.share},
-                    {"gain_sigma", choice.gain.sigma},
+                    {"gain", finite_or_null(choice.gain.share)},
+                    {"gain_sigma", finite_or_null(choice.gain.sigma)},
                     {"taken", choice.taken}});
   }
   return list;

@@ -81,7 +81,7 @@ void take_out_indirect(const CalibratedSession& session, const Model& model, Lum
 void fit_level_normals(const CalibratedSession& session, const Model& model, const std::vector<int>& label, int width, double median,
                        LumitexelSet& set) {
   const DirectedLumitexels directed(session, set);
-  const std::vector<Eigen::Vector3d> normals = fit_normals(directed, lumitexel_neighbours(directed, width), bases_of(model), label, median, {}).normal;
+  const std::vector<Eigen::Vector3d> normals = fit_normals(directed, lumitexel_neighbours(directed, width), bases_of(model), label, median, {}, Uncertainty::None).normal;
   turn(normals, set);
 }
 

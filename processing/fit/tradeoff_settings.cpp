@@ -53,7 +53,7 @@ std::vector<TradeoffSetting> all_settings(int materials) {
     const std::string number = std::to_string(block);
     add("scale-1/" + number, "fitted to photographs of " + number + " times larger pixels").pixel_block = block;
   }
-  add(kReferenceSetting, "reference preset: learnt on all points", "reference");
+  add(kReferenceSetting, "reference preset: learnt on 50,000 points, up to three lobes of the family and shapes that predict best", "reference");
   return settings;
 }
 

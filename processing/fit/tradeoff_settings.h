@@ -11,7 +11,7 @@ namespace lumitexel {
 inline constexpr const char* kStandardSetting = "standard";  // that the others are compared with
 
 struct TradeoffSetting {
-  std::string name;  // "learning-2000"
+  std::string name;  // "learning-5000"
   std::string what;  // in words, against the standard preset
   FitOptions options;
   std::size_t fit_views = 0;  // 0: all

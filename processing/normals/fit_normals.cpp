@@ -19,11 +19,14 @@ void turn(const std::vector<Eigen::Vector3d>& normals, LumitexelSet& lumitexels)
 
 FittedNormals fit_normals(const DirectedLumitexels& lumitexels, const Neighbours& neighbours, const std::vector<std::vector<Brdf>>& bases,
                           const std::vector<int>& label, double median_reflectance, const NormalFitOptions& options,
-                          const std::function<void(int)>& after_step) {
+                          Uncertainty wanted, const std::function<void(int)>& after_step) {
   const std::vector<NormalMaterial> materials = normal_materials(bases, lumitexels.channels(), median_reflectance, options);
   const NormalProblem problem{lumitexels, neighbours, materials, label};
   const NormalField field = smooth_normals(problem, field_on_mesh(problem), {options.prior, options.steps}, after_step);
-  return {field.normal, options.sigmas ? normal_sigmas(problem, field, options.prior) : NormalSigmas{}};
+  FittedNormals fitted{field.normal, {}, {}};
+  if (wanted == Uncertainty::None) return fitted;
+  fitted.sigma = normal_sigmas(problem, field, options.prior, wanted == Uncertainty::Draws ? &fitted.prior_draws : nullptr);
+  return fitted;
 }
 
 }  // namespace lumitexel

@@ -15,13 +15,16 @@ struct NormalFitOptions {
   // fit of materials has it, which has to make do with the coarse mesh's normals.
   double relative_error = 0.05, floor_share = 0.05;
   TexelPrior texel{1.0, 1.0};  // wide: a texel whose normal is free must not be forced to explain its colour by it
-  bool sigmas = true;          // wanted: they take about as long as the normals do
 };
 
 struct FittedNormals {
   std::vector<Eigen::Vector3d> normal;  // of each lumitexel, in world, unit
   NormalSigmas sigma;                   // as if samples erred independently: see sigma_scale.h; empty if not wanted
+  std::vector<PriorDraw> prior_draws;   // only if wanted
 };
+
+// What of a fit beside its normals: sigmas take about as long as they do.
+enum class Uncertainty { None, Sigmas, Draws };
 
 // Materials as the search for normals weighs their samples.
 std::vector<NormalMaterial> normal_materials(const std::vector<std::vector<Brdf>>& bases, int channels, double median_reflectance,
@@ -33,6 +36,6 @@ void turn(const std::vector<Eigen::Vector3d>& normals, LumitexelSet& lumitexels)
 // bases: of each material, as texels mix them. label: material of each lumitexel. median_reflectance: 1/sr.
 FittedNormals fit_normals(const DirectedLumitexels& lumitexels, const Neighbours& neighbours, const std::vector<std::vector<Brdf>>& bases,
                           const std::vector<int>& label, double median_reflectance, const NormalFitOptions& options,
-                          const std::function<void(int)>& after_step = [](int) {});
+                          Uncertainty wanted, const std::function<void(int)>& after_step = [](int) {});
 
 }  // namespace lumitexel

@@ -34,7 +34,7 @@ double normal_sigma_scale(const CalibratedSession& session, const LumitexelSet& 
   std::vector<bool> judged(bands.lumitexel.size(), true);
   for (std::size_t half = 0; half < 2; ++half) {
     const DirectedLumitexels seen(session, bands.set, half_of(session, half));
-    fitted[half] = fit_normals(seen, lumitexel_neighbours(seen, atlas_width), bases, own_label, median_reflectance, options);
+    fitted[half] = fit_normals(seen, lumitexel_neighbours(seen, atlas_width), bases, own_label, median_reflectance, options, Uncertainty::Draws);
     std::vector<DirectedSample> samples;
     for (std::size_t i = 0; i < judged.size(); ++i) {
       seen.samples_of(i, samples);
@@ -45,9 +45,12 @@ double normal_sigma_scale(const CalibratedSession& session, const LumitexelSet& 
   for (std::size_t i = 0; i < judged.size(); ++i) {
     if (!judged[i]) continue;
     squares += (fitted[0].normal[i] - fitted[1].normal[i]).squaredNorm();
+    for (std::uint64_t k = 0; k < kDraws; ++k) {
+      squares -= (fitted[0].prior_draws[k][i] - fitted[1].prior_draws[k][i]).squaredNorm() / static_cast<double>(kDraws);
+    }
     for (const FittedNormals& half : fitted) expected += 2.0 * std::pow(static_cast<double>(half.sigma.samples_rad[i]), 2);  // two axes
   }
-  return expected > 0.0 ? std::max(1.0, std::sqrt(squares / expected)) : 1.0;
+  return expected > 0.0 ? std::sqrt(std::max(1.0, squares / expected)) : 1.0;
 }
 
 std::vector<float> widened(const NormalSigmas& sigmas, double scale, const NormalPrior& prior) {

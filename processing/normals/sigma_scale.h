@@ -1,6 +1,7 @@
 // How far to trust the sigmas of fitted normals. They follow from errors that are independent from sample to sample; what is wrong with meshes, poses and
 // BRDFs is shared by neighbours. So two fits, each to every second photograph, are compared: they differ by more than the samples' part of
-// their sigmas says where that is too small. The prior's part is the same error in both, and does not show.
+// their sigmas says where that is too small. The prior's part is nearly the same error in both: what is not, since samples of one half determine
+// a normal that the other's leave to the mesh, is known from draws of the prior, and counts for nothing.
 #pragma once
 
 #include "processing/normals/fit_normals.h"

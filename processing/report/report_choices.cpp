@@ -1,4 +1,3 @@
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "processing/report/html.h"
@@ -14,16 +13,16 @@ std::string percent(double share) { return html::number(100.0 * share, 2) + " %"
 std::vector<std::string> choice_row(const Json& choice) {
   return {choice.value("of", "?"),
           choice.value("candidate", "?") + " over " + choice.value("over", "?"),
-          percent(choice.value("gain", NAN)),
-          "± " + percent(choice.value("gain_sigma", NAN)),
+          percent(number_or_nan(choice, "gain")),
+          "± " + percent(number_or_nan(choice, "gain_sigma")),
           choice.value("taken", false) ? "taken" : "not taken"};
 }
 
 std::string normals_sentence(const Json& provenance) {
   const Json worth = provenance.value("normals_worth", Json());
   if (!worth.is_object()) return "";
-  return "<p>Normals of the texels' own: photographs left out for it are predicted better by " + html::number(worth.value("deviance_gain", NAN)) +
-         " ± " + html::number(worth.value("deviance_gain_sigma", NAN)) + " of deviance a sample; " +
+  return "<p>Normals of the texels' own: photographs left out for it are predicted better by " + html::number(number_or_nan(worth, "deviance_gain")) +
+         " ± " + html::number(number_or_nan(worth, "deviance_gain_sigma")) + " of deviance a sample; " +
          (provenance.value("normals", "") == "fitted" ? "they were fitted." : "the mesh's were kept.") + "</p>";
 }
 

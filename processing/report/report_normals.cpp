@@ -99,9 +99,9 @@ std::string normals_section(const ReportSubject& subject, const Json& data, cons
           figure_with_scale(sigma_picture, "sigma of the normals",
                             "How uncertain the fitted normal is, one sigma per axis: half of the measured texels at most " +
                                 degrees(sigmas.at("median")) + ", nine tenths at most " + degrees(sigmas.at("nine_tenths")) +
-                                ". It follows from the scatter of the samples, the neighbours and the mesh, widened by how far two halves of the "
-                                "photographs disagree. What all of them share, such as a wrong pose or material, comes on top: on a test object of "
-                                "known form errors were more than twice as large.",
+                                ". It follows from the scatter of the samples, widened by how far two halves of the photographs disagree, and from what the mesh and the "
+                                "neighbours leave open. What all photographs share, such as a wrong pose or material, comes on top: on a test "
+                                "object of known form errors were about twice as large.",
                             "0°", full_angle(kFullSigma_deg)) +
           "</div>\n");
 }

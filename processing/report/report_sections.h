@@ -13,6 +13,9 @@ namespace lumitexel {
 // For each material, how many texels are of it and were fitted to samples; filled-in ones do not count.
 std::vector<std::int64_t> texels_by_material(const Model& model);
 
+// NaN where there is no such number, or null.
+double number_or_nan(const nlohmann::json& parent, const std::string& key);
+
 // ---- what a reader takes along who reads no further (report_summary.cpp)
 // {"materials", "share_of_surface_measured", "samples", "fit_seconds", "prediction": {"kept_out_of_the_fit", "photographs", "square_roots",
 // "clipped", "in_words", "shown": the photograph}}; the prediction is null where nothing was compared.

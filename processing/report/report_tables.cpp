@@ -30,10 +30,6 @@ StageName name_of(FitStage stage) {
 
 std::string stage_title(FitStage stage) { return std::string(name_of(stage).title) + " (" + name_of(stage).papers + ")"; }
 
-double number_or_nan(const Json& parent, const std::string& key) {
-  return parent.is_object() && parent.contains(key) && parent.at(key).is_number() ? parent.at(key).get<double>() : NAN;
-}
-
 // Rows: one a stage. Columns: the entries of the stage's list.
 std::string table_by_stage(const Json& lists, const std::vector<std::string>& names) {
   std::vector<std::string> header{"stage"};
@@ -119,6 +115,10 @@ std::string breakdown_tables(const Json& provenance) {
 }
 
 }  // namespace
+
+double number_or_nan(const Json& parent, const std::string& key) {
+  return parent.is_object() && parent.contains(key) && parent.at(key).is_number() ? parent.at(key).get<double>() : NAN;
+}
 
 std::vector<std::int64_t> texels_by_material(const Model& model) {
   std::vector<std::int64_t> counts(model.materials.size());

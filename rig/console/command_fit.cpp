@@ -89,6 +89,9 @@ FitOptions fit_options(const FitSettings& settings) {
   options.principal_functions |= settings.principal_functions;
   options.plain_projection |= settings.plain_projection;
   if (paper) require_options_of_the_paper(settings, options);
+  if (!paper && options.plain_projection && options.principal_functions) {
+    throw BadInput("--principal-functions", "with --plain-projection", "one of both: without a prior no left-out samples say whether functions should move");
+  }
   return options;
 }
 

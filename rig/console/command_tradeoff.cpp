@@ -134,7 +134,7 @@ void add_tradeoff_command(CLI::App& app, CommandAction& action) {
   command->add_option("SESSION", arguments->session, "Session to fit, with held-out views")->required();
   command->add_option("--materials", arguments->materials, "Materials of every fit, 1 to 64, or auto, without the paper's then: it does not choose them")
       ->capture_default_str();
-  command->add_flag("--reference,--full", arguments->full, "Also the reference preset, which learns on every surface point and takes long");
+  command->add_flag("--reference,--full", arguments->full, "Also the reference preset, which takes several times as long");
   command->add_option("--only", arguments->only, "These settings only: " + setting_names())->delimiter(',')->type_name("NAME");
   command->footer(meanings(tradeoff_settings(4, true, {})));
   command->add_option("--keep", arguments->keep, "File of measurements, added to as they come; those it has of this session, setting, program and machine are not made again");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 
 #include "processing/fit/fit_options.h"
 
@@ -9,18 +10,19 @@ namespace lumitexel {
 
 struct FitSettings {
   std::string session, quality = "draft";
-  int materials = 6, lobes = 1;
+  int materials = 6;
+  std::optional<int> lobes;
 
   void ask_for(CLI::App& app) {
     app.add_option("SESSION", session, "Session, calibrated or imported")->required();
     app.add_option("--quality", quality, "draft, standard or reference")->capture_default_str();
-    app.add_option("--materials", materials, "As fit has it; 0: auto")->capture_default_str();
-    app.add_option("--lobes", lobes, "As fit has it")->capture_default_str();
+    app.add_option("--materials", materials, "How many; 0: auto")->capture_default_str();
+    app.add_option("--lobes", lobes, "Most lobes of a material (default: as the quality has it)");
   }
   FitOptions options() const {
     FitOptions options = FitOptions::preset(quality);
     options.materials = materials;
-    options.most_lobes = lobes;
+    if (lobes) options.most_lobes = *lobes;
     return options;
   }
 };

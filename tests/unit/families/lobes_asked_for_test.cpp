@@ -70,5 +70,28 @@ TEST(LobesAskedFor, TheTrueFamilyIsFound) {
   }
 }
 
+// Materials known before have their lobes already. What is found anew on the same samples is given its own before the two are compared: neither
+// predicts better. With one lobe it would err 180 times as much.
+TEST(LobesAskedFor, MaterialsFoundAnewAreGivenTheirsBeforeTheyAreCompared) {
+  const Brdf truth = known_brdf(BrdfFamily::Lafortune, {KnownLobe{0.3, 3.0}, KnownLobe{2.0, 100.0}});
+  std::mt19937 random(1);
+  Observations observations;
+  add_lumitexels(observations, truth, 2000, 6, 0.05, random);
+  ClusterOptions options;
+  options.materials = 1;
+  options.errors = ErrorSource::Estimated;
+  options.fit.error = {0.05, 1e-3};
+  options.fit.most_lobes = 2;
+  LumitexelList learnt;
+  for (std::size_t i = 0; i < observations.lumitexels(); i += 2) learnt.push_back(i);
+  const Clustering before = cluster_materials(observations, learnt, options, [](int) {});
+  ASSERT_EQ(before.materials[0].model.brdf.lobes.size(), 2u);
+  options.before = {&before, true};
+  const Clustering after = cluster_materials(observations, learnt, options, [](int) {});
+  ASSERT_EQ(after.choices.size(), 1u);
+  EXPECT_EQ(after.choices[0].of, "materials");
+  EXPECT_NEAR(after.choices[0].gain.share, 0.0, 0.01);
+}
+
 }  // namespace
 }  // namespace lumitexel

@@ -101,6 +101,16 @@ TEST(ErrorChoice, AnEfficientFitMayLoseLittleSurelyAndNotMuchEvenUnsurely) {
   EXPECT_FALSE(is_taken(errors_about(1.03, 1.0, 400), before, Claim::Efficient));
 }
 
+TEST(ErrorChoice, WhatIsNoNumberNeverWins) {
+  const std::vector<SquaredError> sound = errors_about(1.0, 0.1, 400);
+  std::vector<SquaredError> spoilt = errors_about(0.5, 0.1, 400);
+  spoilt[7].root = std::nan("");
+  for (const Claim claim : {Claim::Better, Claim::Richer, Claim::Efficient}) {
+    EXPECT_FALSE(is_taken(spoilt, sound, claim));
+    EXPECT_TRUE(is_taken(sound, spoilt, claim));
+  }
+}
+
 TEST(ErrorChoice, KeepsWhatEachComparisonSaid) {
   const std::vector<SquaredError> first = errors_about(1.0, 0.0, 400), second = errors_about(0.9, 0.2, 400), third = errors_about(0.95, 0.2, 400);
   std::vector<Choice> choices;

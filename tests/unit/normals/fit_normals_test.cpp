@@ -14,7 +14,7 @@ namespace {
 FittedNormals fit(const NormalPatch& patch, const NormalFitOptions& options = {}) {
   const DirectedLumitexels lumitexels(patch.session, patch.lumitexels);
   return fit_normals(lumitexels, lumitexel_neighbours(lumitexels, patch.width), patch.bases, patch.label, patch.median_reflectance,
-                     options);
+                     options, Uncertainty::Sigmas);
 }
 
 // Errors as the patch makes them: for tests of what follows from noise alone.
@@ -78,7 +78,7 @@ void drop_samples(NormalPatch& patch, std::size_t first, std::size_t last) {
 }
 
 // Nine texels amid others have no sample. The rms of their sigmas, from 9 times 32 numbers, is known to 4 %: it is 1.4 times the others',
-// and five sigmas below that is the bound.
+// and four sigmas below that is the bound.
 TEST(FitNormals, WhereSamplesSayNothingNeighboursDecideAndSigmaIsWider) {
   NormalPatch patch = make_patch({40, 12, 0.07, 0.02, 1});
   std::vector<std::size_t> alone;
@@ -88,12 +88,14 @@ TEST(FitNormals, WhereSamplesSayNothingNeighboursDecideAndSigmaIsWider) {
   for (const std::size_t i : alone) drop_samples(patch, i, i + 1);
   const FittedNormals fitted = fit(patch);
   const std::vector<float> sigma = whole_sigma(fitted);
-  double squares_alone = 0.0, squares = 0.0;
+  double squares_alone = 0.0, squares = 0.0, off = 0.0, off_mesh = 0.0;
   for (const std::size_t i : alone) {
-    EXPECT_LT(angle_rad(fitted.normal[i], patch.truth[i]), 0.5 * angle_rad(Eigen::Vector3d::UnitZ(), patch.truth[i]) + 0.005) << i;
+    off += std::pow(angle_rad(fitted.normal[i], patch.truth[i]), 2);
+    off_mesh += std::pow(angle_rad(Eigen::Vector3d::UnitZ(), patch.truth[i]), 2);
     squares_alone += std::pow(static_cast<double>(sigma[i]), 2) / static_cast<double>(alone.size());
   }
   for (const float other : sigma) squares += std::pow(static_cast<double>(other), 2) / static_cast<double>(sigma.size());
+  EXPECT_LT(std::sqrt(off), 0.5 * std::sqrt(off_mesh));
   EXPECT_GT(std::sqrt(squares_alone), 1.15 * std::sqrt(squares));
 }
 

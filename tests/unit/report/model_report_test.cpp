@@ -97,7 +97,8 @@ TEST_F(ModelReport, NamesFromFilesCannotBecomeMarkup) {
 TEST_F(ModelReport, SaysWhatLeftOutSamplesDecided) {
   EXPECT_THAT(page(false), Not(HasSubstr("What the samples decided")));
   auto provenance = nlohmann::json::parse(model_.provenance_json);
-  provenance["choices"] = {{{"of", "bases of material 3"}, {"candidate", "7"}, {"over", "3"}, {"gain", 0.0123}, {"gain_sigma", 0.0045}, {"taken", true}}};
+  provenance["choices"] = {{{"of", "bases of material 3"}, {"candidate", "7"}, {"over", "3"}, {"gain", 0.0123}, {"gain_sigma", 0.0045}, {"taken", true}},
+                          {{"of", "errors"}, {"candidate", "estimated"}, {"over", "labels"}, {"gain", nullptr}, {"gain_sigma", nullptr}, {"taken", false}}};
   provenance["normals_worth"] = {{"deviance_gain", 0.237}, {"deviance_gain_sigma", 0.0677}, {"left_out_samples", 51008}};
   provenance["normals"] = "fitted";
   model_.provenance_json = provenance.dump();
@@ -107,6 +108,7 @@ TEST_F(ModelReport, SaysWhatLeftOutSamplesDecided) {
   EXPECT_THAT(html, HasSubstr("7 over 3"));
   EXPECT_THAT(html, HasSubstr("1.2 %"));
   EXPECT_THAT(html, HasSubstr("± 0.45 %"));
+  EXPECT_THAT(html, HasSubstr("<td>not taken</td>"));
   EXPECT_THAT(html, HasSubstr("0.237 ± 0.0677"));
 }
 
