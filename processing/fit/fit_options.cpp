@@ -20,11 +20,7 @@ FitOptions FitOptions::preset(const std::string& quality) {
   FitOptions options;
   options.quality = quality;
   if (quality == "draft") {
-    options.final_lumitexels = 2000;
-    options.interreflections.rounds = 1;
-  } else if (quality == "standard") {
-    options.final_lumitexels = 5000;
-    options.interreflections.rounds = 2;
+    options.interreflections.wanted = false;
   } else if (quality == "reference") {
     options.learning_lumitexels = 50000;  // where there are twice as many, the others judge choices
     options.final_lumitexels = std::numeric_limits<std::size_t>::max() / 2;
@@ -33,7 +29,7 @@ FitOptions FitOptions::preset(const std::string& quality) {
     options.most_lobes = 3;
     options.interreflections.rounds = 4;
     options.interreflections.light.paths = 16;
-  } else {
+  } else if (quality != "standard") {
     throw BadInput("--quality", "'" + quality + "'", "draft, standard or reference");
   }
   return options;
@@ -41,6 +37,7 @@ FitOptions FitOptions::preset(const std::string& quality) {
 
 FitOptions as_published(FitOptions options) {
   options.method = FitMethod::Paper;
+  if (options.materials == 0) options.materials = kMaterialsOfThePaper;
   options.family = BrdfFamily::Lafortune;
   options.most_lobes = 1;
   options.lobe_shapes = LobeShapes::Separate;

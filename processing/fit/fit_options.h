@@ -25,7 +25,7 @@ const char* to_string(NormalChoice choice);  // "auto", "fitted", "texel", "mesh
 // Whether light between the object's surfaces is sought (interreflection_stage.h), and how.
 struct InterreflectionOptions {
   bool wanted = true;
-  int rounds = 2;  // at most, and at least 1; the first costs no fit of its own where normals are fitted after it
+  int rounds = 1;  // at most, and at least 1; the first costs no fit of its own where normals are fitted after it
   IndirectOptions light;
 };
 
@@ -33,7 +33,7 @@ struct FitOptions {
   std::string quality = "standard";
   FitMethod method = FitMethod::Lumitexel;
   LayoutOptions layout;
-  int materials = 4;                        // 0: as many as the samples ask for
+  int materials = 0;                        // 0: as many as the samples ask for
   std::optional<BrdfFamily> family = BrdfFamily::Lafortune;  // none: whichever predicts left-out samples best
   int most_lobes = 2;                       // each must be asked for by the samples; with the paper's method it is the number
   bool principal_functions = false;         // tried for each material, and kept where left-out lumitexels are predicted better
@@ -43,7 +43,7 @@ struct FitOptions {
   ErrorSource errors = ErrorSource::Auto;
   double intensity_weight = 0.3;            // s of the paper's eq. 6; only the paper's method looks at it
   std::size_t learning_lumitexels = 2000;   // that the materials are learnt on
-  std::size_t final_lumitexels = 5000;      // of its own that each material is fitted to at the end
+  std::size_t final_lumitexels = 2000;      // of its own that each material is fitted to at the end
   LobeShapes lobe_shapes = LobeShapes::Shared;  // of a material's channels
   int bases = 0;                            // at most so many BRDFs that a material's texels mix; 0: no more than predict left-out samples better
   Precision precision = Precision::Double;  // of the bases' values at samples
@@ -55,6 +55,8 @@ struct FitOptions {
   // What they are is the README's table of presets. Throws BadInput on a name other than draft, standard or reference.
   static FitOptions preset(const std::string& quality);
 };
+
+inline constexpr int kMaterialsOfThePaper = 4;  // where nobody says how many: its method does not choose
 
 // The paper's method, complete and exactly as published: each channel one lobe of its own, least squares, principal functions always moved.
 FitOptions as_published(FitOptions options);

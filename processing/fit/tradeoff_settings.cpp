@@ -13,20 +13,27 @@ constexpr const char* kReferenceSetting = "reference";
 constexpr const char* kPaperSetting = "paper";
 
 // What a setting changes is stated against the standard preset, which is in the list itself.
-std::vector<TradeoffSetting> all_settings(int materials) {
+std::vector<TradeoffSetting> all_settings(std::optional<int> materials) {
   std::vector<TradeoffSetting> settings;
   const auto add = [&](const std::string& name, const std::string& what, const std::string& quality = kStandardSetting) -> TradeoffSetting& {
     settings.push_back({name, what, FitOptions::preset(quality)});
-    settings.back().options.materials = materials;
+    if (materials) settings.back().options.materials = *materials;
     return settings.back();
   };
-  add("draft", "draft preset: materials fitted to 2,000 points each, light between surfaces predicted once", "draft");
-  add(kStandardSetting, "standard preset: learnt on 2,000 points, up to two Lafortune lobes, all views");
+  add("draft", "draft preset: light between surfaces left in", "draft");
+  add(kStandardSetting, "standard preset: learnt on 2,000 points, up to two Lafortune lobes, normals where they pay, light between surfaces taken out once");
   for (const std::size_t learning : {500u, 1000u, 5000u, 10000u}) {
     const std::string number = std::to_string(learning);
     add("learning-" + number, "materials learnt on " + number + " points").options.learning_lumitexels = learning;
   }
-  if (materials != 0) add("materials-auto", "as many materials as the samples ask for").options.materials = 0;
+  for (const int count : {0, 2, 4, 8}) {
+    if (count == settings.front().options.materials) continue;
+    const std::string number = std::to_string(count);
+    if (count == 0) add("materials-auto", "as many materials as the samples ask for").options.materials = 0;
+    else add("materials-" + number, number + " materials").options.materials = count;
+  }
+  add("final-10000", "each material fitted to 10,000 of its points").options.final_lumitexels = 10000;
+  add("rounds-2", "light between surfaces taken out twice").options.interreflections.rounds = 2;
   add("principal", "basis functions moved where that predicts better").options.principal_functions = true;
   add("errors-given", "30 % errors everywhere, nothing estimated").options.errors = ErrorSource::Given;
   add("lobes-1", "no more than one lobe a material").options.most_lobes = 1;
@@ -39,7 +46,6 @@ std::vector<TradeoffSetting> all_settings(int materials) {
   add("bases-8", "and other materials, asked for or not").options.bases = kMaxBasis;
   add("float", "weights of texels from values in float").options.precision = Precision::Float;
   add("normals-mesh", "the mesh's normals, nothing fitted").options.normals = NormalChoice::Mesh;
-  add("interreflections-off", "light between surfaces left in").options.interreflections.wanted = false;
   FitOptions& direct = add("mesh-direct", "the mesh's normals, and light between surfaces left in").options;
   direct.normals = NormalChoice::Mesh;
   direct.interreflections.wanted = false;
@@ -68,15 +74,9 @@ void require_known(const std::vector<TradeoffSetting>& settings, const std::vect
 
 }  // namespace
 
-std::vector<TradeoffSetting> tradeoff_settings(int materials, bool full, const std::vector<std::string>& only) {
+std::vector<TradeoffSetting> tradeoff_settings(std::optional<int> materials, bool full, const std::vector<std::string>& only) {
   std::vector<TradeoffSetting> settings = all_settings(materials);
   require_known(settings, only);
-  if (materials == 0) {
-    if (std::find(only.begin(), only.end(), kPaperSetting) != only.end()) {
-      throw BadInput("--materials", "auto with --only paper", "a number: the paper does not choose it");
-    }
-    std::erase_if(settings, [](const TradeoffSetting& setting) { return setting.name == kPaperSetting; });
-  }
   std::erase_if(settings, [&](const TradeoffSetting& setting) {
     if (setting.name == kReferenceSetting && full) return false;
     if (only.empty()) return setting.name == kReferenceSetting;

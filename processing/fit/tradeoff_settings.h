@@ -1,6 +1,7 @@
 // The settings of a fit between which `lumitexel tradeoff` lets the user's own session decide.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ struct TradeoffSetting {
 
 // The presets, and the standard preset with one thing changed at a time. `only`: these and no others, in the list's order;
 // if empty, all but the reference preset. `full`: the reference preset too. Throws BadInput on a name that is not in the list, and lists them.
-// materials 0: each fit as many as its samples ask for; the paper's method needs a number and is left out then, or BadInput if it is asked for.
-std::vector<TradeoffSetting> tradeoff_settings(int materials, bool full, const std::vector<std::string>& only);
+// materials: of every setting but those that are about them; nothing: as the presets have it, which is 0. 0: as many as the samples ask for; the
+// paper's method, which does not choose, takes kMaterialsOfThePaper then.
+std::vector<TradeoffSetting> tradeoff_settings(std::optional<int> materials, bool full, const std::vector<std::string>& only);
 
 }  // namespace lumitexel

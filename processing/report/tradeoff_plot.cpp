@@ -140,9 +140,12 @@ Box label_box(double x, double y, std::size_t letters, bool right) {
   return right ? Box{x, y - kLine_px, x + width, y + 3} : Box{x - width, y - kLine_px, x, y + 3};
 }
 
-// Beside the point, on the first side and height that is inside the drawing and free of points and other labels.
+// Beside the point, on the first side and height that is inside the drawing and free of points and other labels. Only what is on the front is
+// named from further away: a name that stands nearer to another point than to its own misleads.
 std::string label(const Axes& axes, const Point& point, std::vector<Box>& taken) {
+  constexpr double kNear_px = 22.0;
   for (const double down : {4.0, -8.0, 17.0, -22.0, 31.0, -36.0, 45.0, -50.0, 59.0}) {
+    if (!point.front && std::abs(down) > kNear_px) break;
     for (const bool right : {true, false}) {
       const double x = axes.x(point.seconds) + (right ? 9.0 : -9.0), y = axes.y(point.error) + down;
       const Box box = label_box(x, y, point.name.size(), right);
@@ -150,7 +153,8 @@ std::string label(const Axes& axes, const Point& point, std::vector<Box>& taken)
       const bool free = std::none_of(taken.begin(), taken.end(), [&](const Box& other) { return box.meets(other); });
       if (!inside || !free) continue;
       taken.push_back(box);
-      return formatted("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">", x, y, right ? "start" : "end") + html::escaped(point.name) + "</text>\n";
+      return formatted("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\" fill=\"%s\">", x, y, right ? "start" : "end",
+                       point.front ? kFrontColour : kOtherColour) + html::escaped(point.name) + "</text>\n";
     }
   }
   return "";  // crowded out; the point's own title still names it
@@ -180,7 +184,8 @@ std::string tradeoff_plot(const Tradeoff& tradeoff) {
     const double x = axes.x(point.seconds), y = axes.y(point.error);
     taken.push_back({x - 6, y - 6, x + 6, y + 6});
   }
-  for (const Point& point : points) svg += label(axes, point, taken);
+  for (const Point& point : front) svg += label(axes, point, taken);
+  for (const Point& point : points) svg += point.front ? "" : label(axes, point, taken);
   return svg + "</svg>";
 }
 

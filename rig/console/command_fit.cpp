@@ -274,10 +274,11 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
   command->add_option("SESSION", settings->session, "Session to fit: captured or imported")->required();
   command->add_option("--out", settings->out, "Folder of the model; a model that is there is replaced")->required();
   command->add_option("--quality", settings->quality,
-                      "draft: materials learnt on 2,000 surface points and fitted to 2,000 each, light between surfaces predicted once; "
-                      "standard: 2,000 and 5,000, twice; reference: 50,000 and all, up to four times, and lobes as the samples ask for")
+                      "draft: light between surfaces is left in, which makes fit, evaluate, render and report quicker; standard: it is predicted and taken "
+                      "out; reference: up to four times, with materials learnt on 50,000 surface points instead of 2,000, fitted to all instead of 2,000, "
+                      "and lobes as the samples ask for")
       ->capture_default_str();
-  command->add_option("--materials", settings->materials, "How many materials to look for, 1 to 64, or auto: as many as the samples ask for, at most 20 (default: 4)");
+  command->add_option("--materials", settings->materials, "How many materials to look for, 1 to 64, or auto: as many as the samples ask for, at most 20 (default: auto, with --method paper, which does not choose, 4)");
   command->add_option("--method", settings->method,
                       "lumitexel, or paper: clustering, fits and projection as published (Lensch et al. 2003), for comparison")
       ->capture_default_str();
@@ -291,7 +292,7 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
                       "--method paper mesh)");
   command->add_option("--interreflections", settings->interreflections,
                       "auto: light between the object's own surfaces is predicted and taken out of the samples where it can matter; off "
-                      "(default: auto, with --method paper off)");
+                      "(default: auto, with --quality draft and --method paper off)");
   command->add_option("--layout", settings->layout,
                       "photographs: an atlas whose texels are the pixels of each surface point's best photograph; mesh: the mesh's own "
                       "texture coordinates, kept as they are; auto: the mesh's if it has some that serve, else photographs")

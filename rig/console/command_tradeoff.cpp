@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct TradeoffArguments {
-  std::string session, page, keep, materials = "4";
+  std::string session, page, keep, materials;
   bool full = false;
   std::vector<std::string> only;
 };
@@ -94,7 +94,7 @@ std::string tradeoff_legend(const Tradeoff& tradeoff) {
 
 std::string setting_names() {
   std::string names;
-  for (const TradeoffSetting& setting : tradeoff_settings(4, true, {})) names += (names.empty() ? "" : ", ") + setting.name;
+  for (const TradeoffSetting& setting : tradeoff_settings({}, true, {})) names += (names.empty() ? "" : ", ") + setting.name;
   return names;
 }
 
@@ -108,7 +108,9 @@ std::string program_and_machine() {
 }
 
 CommandResult tradeoff_command(const TradeoffArguments& arguments, CommandContext& context) {
-  const auto settings = tradeoff_settings(materials_wanted("--materials", arguments.materials), arguments.full, arguments.only);
+  std::optional<int> materials;
+  if (!arguments.materials.empty()) materials = materials_wanted("--materials", arguments.materials);
+  const auto settings = tradeoff_settings(materials, arguments.full, arguments.only);
   const SessionStore store = session_given("SESSION", arguments.session);
   const CalibratedSession session = calibrate_session(store, context.progress);
   std::optional<TradeoffJournal> journal;
@@ -132,11 +134,11 @@ void add_tradeoff_command(CLI::App& app, CommandAction& action) {
   CLI::App* command = app.add_subcommand(
       "tradeoff", "Speed against accuracy on this session: fits it with one setting after another, each judged by held-out photographs");
   command->add_option("SESSION", arguments->session, "Session to fit, with held-out views")->required();
-  command->add_option("--materials", arguments->materials, "Materials of every fit, 1 to 64, or auto, without the paper's then: it does not choose them")
-      ->capture_default_str();
+  command->add_option("--materials", arguments->materials, "Materials of every fit, 1 to 64, or auto (default: auto, but for settings that say how many, and the paper's method, which "
+                      "does not choose: 4)");
   command->add_flag("--reference,--full", arguments->full, "Also the reference preset, which takes several times as long");
   command->add_option("--only", arguments->only, "These settings only: " + setting_names())->delimiter(',')->type_name("NAME");
-  command->footer(meanings(tradeoff_settings(4, true, {})));
+  command->footer(meanings(tradeoff_settings({}, true, {})));
   command->add_option("--keep", arguments->keep, "File of measurements, added to as they come; those it has of this session, setting, program and machine are not made again");
   command->add_option("--page", arguments->page, "HTML file to write, with a drawing of error against CPU seconds");
   command->callback([arguments, &action] {

@@ -9,7 +9,7 @@
 namespace lumitexel {
 
 struct FitSettings {
-  std::string session, quality = "draft";
+  std::string session, quality = "standard";
   int materials = 6;
   std::optional<int> lobes;
 

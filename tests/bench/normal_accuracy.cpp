@@ -149,7 +149,7 @@ int main(int argc, char** argv) {
   options.normals = alone ? NormalChoice::Texel : NormalChoice::Fitted;
   const FittedModel fitted = fit_model(session, options, StageTimer(), quiet);
   std::printf("%s\n%s, %s quality, %d materials, %d lobes; degrees off the true normal, median and mean\n", machine_line().c_str(),
-              settings.session.c_str(), settings.quality.c_str(), settings.materials, settings.lobes);
+              settings.session.c_str(), settings.quality.c_str(), options.materials, options.most_lobes);
   std::printf("%-18s %8s   %13s   %13s   %13s   %s\n", "samples", "texels", "mesh", "stereo", "fitted", "fitted over its sigma, median and rms");
   const std::vector<Row> rows = rows_of(session, fitted.model, TrueNormals(read_mesh(truth)));
   constexpr std::size_t kMost = 10000;

@@ -103,11 +103,12 @@ void expect_replays(const TemporaryFolder& folder, const std::string& session, c
   ASSERT_EQ(replay.exit_code, 0) << replay.errors;
   EXPECT_EQ(replay.json().at("left_out"), nlohmann::json{"fit_007"});
   for (const std::string& command : {"verify " + shorter, "calibrate " + shorter,
-                                     "fit " + shorter + " --out " + shorter + "_model --quality draft --materials 2",
+                                     "fit " + shorter + " --out " + shorter + "_model --quality draft --materials 2 --normals mesh --interreflections off",
                                      "evaluate " + shorter + "_model " + shorter}) {
     const ProgramRun run = run_program(command);
     EXPECT_EQ(run.exit_code, 0) << command << '\n' << run.errors;
     if (command.starts_with("fit")) {
+      EXPECT_NE(run.output.find("What left-out samples said"), std::string::npos) << run.output;
       EXPECT_NE(run.output.find("chosen by left-out samples"), std::string::npos) << run.output;
     }
   }
@@ -142,6 +143,12 @@ TEST(CapturedSession, BecomesAModelThatPredictsAHeldOutPhotograph) {
   const ProgramRun fit = run_program("fit " + session + " --out " + model + " --quality draft --materials 4 --json");
   ASSERT_EQ(fit.exit_code, 0) << fit.errors;
   EXPECT_EQ(fit.json().at("materials"), 4);
+  EXPECT_EQ(fit.json().at("options").at("most_lobes"), 2) << "as the preset has it";
+  const auto choices = fit.json().at("choices");
+  ASSERT_FALSE(choices.empty());
+  EXPECT_EQ(choices[0].at("of"), "errors");
+  EXPECT_EQ(choices[0].at("over"), "given");
+  EXPECT_TRUE(choices[0].at("gain").is_number());
 
   const ProgramRun evaluate = run_program("evaluate " + model + " " + session + " --json");
   ASSERT_EQ(evaluate.exit_code, 0) << evaluate.errors;

@@ -15,7 +15,7 @@ FittedModel fit_sphere(int materials, const TemporaryFolder& folder) {
       {view_of_origin("a", {0.5, 0, 0}, {0.6, 0.4, 0.3}), view_of_origin("b", {0.45, 0.2, 0.1}, {0.6, -0.4, 0.3}),
        view_of_origin("c", {0.45, -0.2, 0.1}, {0.7, 0.1, -0.3}), view_of_origin("d", {0.4, 0.1, 0.3}, {0.7, 0.1, 0.5})},
       folder);
-  FitOptions options = FitOptions::preset("draft");
+  FitOptions options = FitOptions::preset("standard");
   options.materials = materials;
   NoProgress progress;
   return fit_model(session, options, {}, progress);
@@ -43,7 +43,7 @@ TEST(FitModel, ProvenanceSaysWhatWasDone) {
   const auto provenance = nlohmann::json::parse(fitted.model.provenance_json);
   EXPECT_EQ(provenance.at("lumitexels"), fitted.summary.lumitexels);
   EXPECT_EQ(provenance.at("samples"), fitted.summary.samples);
-  EXPECT_EQ(provenance.at("options").at("quality"), "draft");
+  EXPECT_EQ(provenance.at("options").at("quality"), "standard");
   std::vector<std::string> names;
   for (const auto& stage : provenance.at("stages")) {
     names.push_back(stage.at("name"));

@@ -31,8 +31,8 @@ Tradeoff three_settings() {
 TEST(TradeoffPlot, MarksAndNamesEveryMeasuredSettingAndDrawsTheFront) {
   const std::string svg = tradeoff_plot(three_settings());
   EXPECT_EQ(count(svg, "<circle"), 3u);
-  EXPECT_EQ(count(svg, "fill=\"#b4541a\""), 2u);  // the two on the front
-  EXPECT_THAT(svg, HasSubstr(">quick&lt;b&gt;</text>"));
+  EXPECT_EQ(count(svg, "r=\"5\" fill=\"#b4541a\""), 2u);  // the two on the front
+  EXPECT_THAT(svg, HasSubstr("fill=\"#b4541a\">quick&lt;b&gt;</text>"));
   EXPECT_THAT(svg, HasSubstr("fill=\"none\" stroke=\"#b4541a\""));
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
   EXPECT_THAT(svg, Not(HasSubstr("views-16")));

@@ -85,14 +85,17 @@ TEST(Tradeoff, SaysWhatToDoWhereNothingIsHeldOut) {
 TEST(Presets, GoFromQuickToThoroughAndThePapersMethodTakesNothingFromThem) {
   const FitOptions draft = FitOptions::preset("draft"), standard = FitOptions::preset("standard"), reference = FitOptions::preset("reference");
   EXPECT_EQ(standard.most_lobes, 2);
-  EXPECT_LT(draft.final_lumitexels, standard.final_lumitexels);
-  EXPECT_LT(draft.interreflections.rounds, standard.interreflections.rounds);
+  EXPECT_EQ(standard.materials, 0);
+  EXPECT_FALSE(draft.interreflections.wanted);
+  EXPECT_TRUE(standard.interreflections.wanted);
+  EXPECT_GT(reference.interreflections.rounds, standard.interreflections.rounds);
   EXPECT_GT(reference.learning_lumitexels, standard.learning_lumitexels);
   EXPECT_FALSE(reference.family.has_value());
   for (const FitOptions& preset : {draft, standard, reference}) {
     const FitOptions paper = as_published(preset);
     EXPECT_EQ(paper.family, BrdfFamily::Lafortune);
     EXPECT_EQ(paper.most_lobes, 1);
+    EXPECT_EQ(paper.materials, kMaterialsOfThePaper);
     EXPECT_EQ(paper.lobe_shapes, LobeShapes::Separate);
     EXPECT_EQ(paper.normals, NormalChoice::Mesh);
     EXPECT_FALSE(paper.interreflections.wanted);
@@ -111,8 +114,11 @@ TEST(TradeoffSettings, AreTheNamedOnesAndTheReferenceOnlyIfAsked) {
   EXPECT_THAT(names(tradeoff_settings(4, true, {"draft"})), testing::ElementsAre("draft", "reference"));
   EXPECT_THAT(names(tradeoff_settings(4, false, {"reference"})), testing::ElementsAre("reference"));
   EXPECT_EQ(tradeoff_settings(7, false, {"paper"}).front().options.materials, 7);
-  EXPECT_THAT(names(tradeoff_settings(0, true, {})), testing::Not(testing::Contains("paper")));  // it needs a number
-  EXPECT_BAD_INPUT(tradeoff_settings(0, false, {"paper"}), "--materials", "paper");
+  EXPECT_EQ(tradeoff_settings({}, false, {"paper"}).front().options.materials, kMaterialsOfThePaper);
+  EXPECT_EQ(tradeoff_settings(0, false, {"paper"}).front().options.materials, kMaterialsOfThePaper);
+  EXPECT_EQ(tradeoff_settings({}, false, {"standard"}).front().options.materials, 0);
+  EXPECT_EQ(tradeoff_settings(6, false, {"materials-auto"}).front().options.materials, 0);
+  EXPECT_EQ(tradeoff_settings({}, false, {"materials-8"}).front().options.materials, 8);
   EXPECT_BAD_INPUT(tradeoff_settings(4, false, {"fast"}), "fast", "learning-5000");
 }
 
