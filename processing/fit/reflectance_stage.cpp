@@ -69,7 +69,7 @@ PriorChoice choose_prior_and_bases(const Observations& observations, const Lumit
   if (!shrinks || options.plain_projection) return prior_for(observations, members, basis, material, options);
   const BasesChoice choice = choose_bases(observations, members, basis, material.error, options.precision);
   if (choice.gain) {
-    choices.push_back({with_material("bases", index), std::to_string(basis.size()), std::to_string(1 + kVariations), *choice.gain,
+    choices.push_back({with_material("functions mixed by a texel", index), std::to_string(basis.size()), std::to_string(1 + kVariations), *choice.gain,
                        choice.bases == basis.size()});
   }
   basis.resize(choice.bases);
@@ -122,7 +122,7 @@ void move_bases(const Observations& observations, const Clustering& clustering, 
       const PriorChoice after = prior_for(observations, left_out, moved(learnt), material, options);
       const Gain gain = gain_of(after.by_texel, before.by_texel);
       better = worth_having(gain);
-      summary.choices.push_back({with_material("basis functions", j), "moved", "as found", gain, better});
+      summary.choices.push_back({with_material("functions", j), "moved", "as found", gain, better});
     }
     if (better) basis = moved(members[j]);
     progress.update(static_cast<std::int64_t>(j + 1));

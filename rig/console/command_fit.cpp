@@ -17,8 +17,8 @@ namespace lumitexel {
 namespace {
 
 struct FitSettings {
-  std::string session, out, quality = "standard", method = "lumitexel", errors = "auto", bases = "auto", precision = "double";
-  std::string materials, family, lobe_shapes, normals, interreflections;  // empty: as quality and method have it
+  std::string session, out, quality = "standard", method = "lumitexel", bases = "auto", precision = "double";
+  std::string materials, family, errors, lobe_shapes, normals, interreflections;  // empty: as quality and method have it
   std::optional<int> lobes;
   double intensity_weight = 0.3;
   bool plain_projection = false, principal_functions = false;
@@ -78,7 +78,7 @@ FitOptions fit_options(const FitSettings& settings) {
   if (!settings.interreflections.empty()) {
     options.interreflections.wanted = named_value<bool>("--interreflections", settings.interreflections, {{"auto", true}, {"off", false}});
   }
-  options.errors = named_value("--errors", settings.errors, error_words());
+  if (!settings.errors.empty()) options.errors = named_value("--errors", settings.errors, error_words());
   options.layout = {named_value("--layout", settings.layout, layout_words()), settings.atlas_size};
   if (settings.atlas_size > 0 && options.layout.choice != LayoutChoice::Mesh) {
     throw BadInput("--atlas-size", std::to_string(settings.atlas_size) + " without --layout mesh", "--layout mesh");
@@ -155,10 +155,10 @@ const char* meaning(ErrorSource errors) {
 }
 
 // The paper's method has an error of its own (its eq. 6) and asks for none.
-std::string error_line(const FitSettings& settings, const FitSummary& summary) {
-  if (settings.method == "paper") return "";
+std::string error_line(const FitOptions& options, const FitSummary& summary) {
+  if (options.method == FitMethod::Paper) return "";
   return line("errors: %s (%s)%s\n", to_string(summary.errors), meaning(summary.errors),
-              settings.errors == "auto" ? ", chosen by left-out samples" : ", as told");
+              options.errors == ErrorSource::Auto ? ", chosen by left-out samples" : ", as told");
 }
 
 // Only what was left to the samples.
@@ -185,7 +185,8 @@ std::string bases_line(const FitSettings& settings, const FitSummary& summary) {
 // One a line: what the choice was, and how clear.
 std::string choices_table(const FitSummary& summary) {
   if (summary.choices.empty()) return "";
-  std::string text = "What left-out samples said (gain: share of their error, +- standard error)\n";
+  std::string text = "What left-out samples said. Gain: how much of their error a candidate saves, +- standard error. Taken from 0.5 % and two standard errors on; a "
+                     "source of errors from two, estimated ones also if they lose next to nothing\n";
   for (const Choice& choice : summary.choices) {
     const std::string title = choice.of + ": " + choice.candidate + " over " + choice.before;
     text += line("  %-50s %7.2f +- %.2f %%  %s\n", title.c_str(), 100.0 * choice.gain.share, 100.0 * choice.gain.sigma,
@@ -236,7 +237,7 @@ std::string fit_text(const FitSettings& settings, const FitOptions& options, con
                           static_cast<double>(summary.samples) / static_cast<double>(summary.lumitexels), summary.starved);
   if (summary.unseen_triangles > 0) text += line("  %zu triangles are seen by no view\n", summary.unseen_triangles);
   text += layout_text(summary.layout);
-  text += error_line(settings, summary);
+  text += error_line(options, summary);
   text += lobes_line(options, summary);
   text += bases_line(settings, summary);
   text += choices_table(summary);
@@ -274,8 +275,7 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
   command->add_option("SESSION", settings->session, "Session to fit: captured or imported")->required();
   command->add_option("--out", settings->out, "Folder of the model; a model that is there is replaced")->required();
   command->add_option("--quality", settings->quality,
-                      "draft: light between surfaces is left in, which makes fit, evaluate, render and report quicker; standard: it is predicted and taken "
-                      "out; reference: up to four times, with materials learnt on 50,000 surface points instead of 2,000, fitted to all instead of 2,000, "
+                      "draft: light between surfaces is left in, and errors are not estimated: quicker; standard: with both; reference: light in up to four rounds, materials learnt on 50,000 surface points instead of 2,000, fitted to all instead of 2,000, "
                       "and lobes as the samples ask for")
       ->capture_default_str();
   command->add_option("--materials", settings->materials, "How many materials to look for, 1 to 64, or auto: as many as the samples ask for, at most 20 (default: auto, with --method paper, which does not choose, 4)");
@@ -303,8 +303,7 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
   command->add_option("--errors", settings->errors,
                       "What a fit takes for noise. given: 30 % of each prediction and of the median; estimated: what each material's "
                       "residuals say, outliers counting less; labels: estimated for telling materials apart, given for fitting "
-                      "them; auto: whichever predicts left-out samples best, and estimated also where it loses next to nothing")
-      ->capture_default_str();
+                      "them; auto: whichever predicts left-out samples best, and estimated also where it loses next to nothing (default: auto, with --quality draft given)");
   command->add_flag("--principal-functions", settings->principal_functions,
                     "Also move the basis BRDFs of each material (principal function analysis), where left-out surface points are "
                     "then predicted better; always with --method paper");

@@ -105,7 +105,7 @@ TEST_F(ModelReport, SaysWhatLeftOutSamplesDecided) {
   const std::string html = page(false);
   EXPECT_THAT(html, HasSubstr("What the samples decided"));
   EXPECT_THAT(html, HasSubstr("bases of material 3"));
-  EXPECT_THAT(html, HasSubstr("7 over 3"));
+  EXPECT_THAT(html, HasSubstr("<td>3</td><td>7</td>"));
   EXPECT_THAT(html, HasSubstr("1.2 %"));
   EXPECT_THAT(html, HasSubstr("± 0.45 %"));
   EXPECT_THAT(html, HasSubstr("<td>not taken</td>"));

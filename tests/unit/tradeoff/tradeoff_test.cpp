@@ -87,6 +87,7 @@ TEST(Presets, GoFromQuickToThoroughAndThePapersMethodTakesNothingFromThem) {
   EXPECT_EQ(standard.most_lobes, 2);
   EXPECT_EQ(standard.materials, 0);
   EXPECT_FALSE(draft.interreflections.wanted);
+  EXPECT_EQ(draft.errors, ErrorSource::Given);
   EXPECT_TRUE(standard.interreflections.wanted);
   EXPECT_GT(reference.interreflections.rounds, standard.interreflections.rounds);
   EXPECT_GT(reference.learning_lumitexels, standard.learning_lumitexels);
@@ -95,6 +96,7 @@ TEST(Presets, GoFromQuickToThoroughAndThePapersMethodTakesNothingFromThem) {
     const FitOptions paper = as_published(preset);
     EXPECT_EQ(paper.family, BrdfFamily::Lafortune);
     EXPECT_EQ(paper.most_lobes, 1);
+    EXPECT_EQ(paper.errors, ErrorSource::Auto);
     EXPECT_EQ(paper.materials, kMaterialsOfThePaper);
     EXPECT_EQ(paper.lobe_shapes, LobeShapes::Separate);
     EXPECT_EQ(paper.normals, NormalChoice::Mesh);
