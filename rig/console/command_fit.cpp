@@ -20,7 +20,7 @@ struct FitSettings {
   std::string session, out, quality = "standard", method = "lumitexel", bases = "auto", precision = "double";
   std::string materials, family, errors, lobe_shapes, normals, interreflections;  // empty: as quality and method have it
   std::optional<int> lobes;
-  double intensity_weight = 0.3;
+  std::optional<double> intensity_weight;
   bool plain_projection = false, principal_functions = false;
   std::string layout = "auto";
   int atlas_size = 0;
@@ -60,10 +60,10 @@ void require_options_of_the_paper(const FitSettings& settings, const FitOptions&
   const std::string with_paper = " with --method paper";
   if (options.materials == 0) throw BadInput("--materials", "auto" + with_paper, "a number: the paper does not choose it");
   if (options.family != BrdfFamily::Lafortune) throw BadInput("--family", settings.family + with_paper, "lafortune");
-  if (options.bases != 0) throw BadInput("--bases", settings.bases + with_paper, "no such option: the paper's are all");
+  if (options.bases != 0) throw BadInput("--bases", settings.bases + with_paper, "no --bases with it: the paper's texels mix all");
   if (options.precision != Precision::Double) throw BadInput("--precision", settings.precision + with_paper, "double");
-  if (!settings.lobe_shapes.empty()) throw BadInput("--lobe-shapes", settings.lobe_shapes + with_paper, "no such option: the paper's are separate");
-  if (options.errors != ErrorSource::Auto) throw BadInput("--errors", settings.errors + with_paper, "no such option");
+  if (!settings.lobe_shapes.empty()) throw BadInput("--lobe-shapes", settings.lobe_shapes + with_paper, "no --lobe-shapes with it: the paper's are separate");
+  if (options.errors != ErrorSource::Auto) throw BadInput("--errors", settings.errors + with_paper, "no --errors with it: the paper's method has its own");
 }
 
 FitOptions fit_options(const FitSettings& settings) {
@@ -83,12 +83,16 @@ FitOptions fit_options(const FitSettings& settings) {
   if (settings.atlas_size > 0 && options.layout.choice != LayoutChoice::Mesh) {
     throw BadInput("--atlas-size", std::to_string(settings.atlas_size) + " without --layout mesh", "--layout mesh");
   }
-  options.intensity_weight = settings.intensity_weight;
+  if (settings.intensity_weight) options.intensity_weight = *settings.intensity_weight;
   options.bases = bases_wanted(settings.bases);
   options.precision = named_value<Precision>("--precision", settings.precision, words_by_to_string(std::vector{Precision::Double, Precision::Float}));
   options.principal_functions |= settings.principal_functions;
   options.plain_projection |= settings.plain_projection;
   if (paper) require_options_of_the_paper(settings, options);
+  if (!paper && settings.intensity_weight) throw BadInput("--intensity-weight", "without --method paper", "--method paper with it: ours has no such weight");
+  if (options.most_lobes == 0 && !(settings.family.empty() && settings.lobe_shapes.empty())) {
+    throw BadInput("--lobes", "0 with --family or --lobe-shapes", "1 to 3 with them: without lobes they say nothing");
+  }
   if (!paper && options.plain_projection && options.principal_functions) {
     throw BadInput("--principal-functions", "with --plain-projection", "one of both: without a prior no left-out samples say whether functions should move");
   }
@@ -308,9 +312,8 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
                     "Also move the basis BRDFs of each material (principal function analysis), where left-out surface points are "
                     "then predicted better; always with --method paper");
   command->add_option("--intensity-weight", settings->intensity_weight,
-                      "Of the paper's method: what intensity counts beside colour when materials are told apart")
-      ->check(CLI::Range(1e-3, 1.0))
-      ->capture_default_str();
+                      "With --method paper: what intensity counts beside colour when materials are told apart (default: 0.3)")
+      ->check(CLI::Range(1e-3, 1.0));
   command->add_option("--lobe-shapes", settings->lobe_shapes,
                       "shared: one lobe shape for all colour channels of a material; separate: one a channel, as in the paper; auto: "
                       "separate where that predicts left-out samples better (default: shared, with --quality reference auto, with --method paper separate)");

@@ -59,6 +59,8 @@ TEST(Usage, AWrongValueIsAnsweredWithItsOptionAndTheRightOnes) {
   expect_refused("fit S --out M --errors none", {"--errors: 'none'", "auto, given, labels or estimated"});
   expect_refused("fit S --out M --plain-projection --principal-functions", {"--principal-functions", "--plain-projection"});
   expect_refused("fit S --out M --method paper --quality reference --family ggx", {"--family: ggx with --method paper", "lafortune"});
+  expect_refused("fit S --out M --intensity-weight 0.5", {"--intensity-weight", "--method paper"});
+  expect_refused("fit S --out M --lobes 0 --family ggx", {"--lobes: 0 with --family", "1 to 3"});
   expect_refused("fit S --out M --method ours", {"--method: 'ours'", "lumitexel or paper"});
   expect_refused("calibrate S --without x", {"--without: 'x'", "photon_transfer", "lamp_pattern"});
   expect_refused("calibrate S --without lens,x", {"--without: 'x'"});
