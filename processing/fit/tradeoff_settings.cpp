@@ -77,6 +77,12 @@ void require_known(const std::vector<TradeoffSetting>& settings, const std::vect
 std::vector<TradeoffSetting> tradeoff_settings(std::optional<int> materials, bool full, const std::vector<std::string>& only) {
   std::vector<TradeoffSetting> settings = all_settings(materials);
   require_known(settings, only);
+  if (materials == 0) {  // asked for, not only as the presets have it
+    if (std::find(only.begin(), only.end(), kPaperSetting) != only.end()) {
+      throw BadInput("--materials", "auto with --only paper", "a number: the paper does not choose it");
+    }
+    std::erase_if(settings, [](const TradeoffSetting& setting) { return setting.name == kPaperSetting; });
+  }
   std::erase_if(settings, [&](const TradeoffSetting& setting) {
     if (setting.name == kReferenceSetting && full) return false;
     if (only.empty()) return setting.name == kReferenceSetting;

@@ -21,8 +21,8 @@ struct TradeoffSetting {
 
 // The presets, and the standard preset with one thing changed at a time. `only`: these and no others, in the list's order;
 // if empty, all but the reference preset. `full`: the reference preset too. Throws BadInput on a name that is not in the list, and lists them.
-// materials: of every setting but those that are about them; nothing: as the presets have it, which is 0. 0: as many as the samples ask for; the
-// paper's method, which does not choose, takes kMaterialsOfThePaper then.
+// materials: of every setting but those that are about them; nothing: as the presets have it, as many as the samples ask for, and
+// kMaterialsOfThePaper for the paper's method, which does not choose. 0: the same, without the paper's method, or BadInput if it is asked for.
 std::vector<TradeoffSetting> tradeoff_settings(std::optional<int> materials, bool full, const std::vector<std::string>& only);
 
 }  // namespace lumitexel

@@ -117,7 +117,8 @@ TEST(TradeoffSettings, AreTheNamedOnesAndTheReferenceOnlyIfAsked) {
   EXPECT_THAT(names(tradeoff_settings(4, false, {"reference"})), testing::ElementsAre("reference"));
   EXPECT_EQ(tradeoff_settings(7, false, {"paper"}).front().options.materials, 7);
   EXPECT_EQ(tradeoff_settings({}, false, {"paper"}).front().options.materials, kMaterialsOfThePaper);
-  EXPECT_EQ(tradeoff_settings(0, false, {"paper"}).front().options.materials, kMaterialsOfThePaper);
+  EXPECT_THAT(names(tradeoff_settings(0, true, {})), testing::Not(testing::Contains("paper")));  // it needs a number
+  EXPECT_BAD_INPUT(tradeoff_settings(0, false, {"paper"}), "--materials", "paper");
   EXPECT_EQ(tradeoff_settings({}, false, {"standard"}).front().options.materials, 0);
   EXPECT_EQ(tradeoff_settings(6, false, {"materials-auto"}).front().options.materials, 0);
   EXPECT_EQ(tradeoff_settings({}, false, {"materials-8"}).front().options.materials, 8);
