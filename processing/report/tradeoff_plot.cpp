@@ -153,7 +153,7 @@ std::string label(const Axes& axes, const Point& point, std::vector<Box>& taken)
       const bool free = std::none_of(taken.begin(), taken.end(), [&](const Box& other) { return box.meets(other); });
       if (!inside || !free) continue;
       taken.push_back(box);
-      return formatted("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\" fill=\"%s\">", x, y, right ? "start" : "end",
+      return formatted("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\" style=\"fill:%s\">", x, y, right ? "start" : "end",
                        point.front ? kFrontColour : kOtherColour) + html::escaped(point.name) + "</text>\n";
     }
   }

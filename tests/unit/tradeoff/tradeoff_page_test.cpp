@@ -32,7 +32,7 @@ TEST(TradeoffPlot, MarksAndNamesEveryMeasuredSettingAndDrawsTheFront) {
   const std::string svg = tradeoff_plot(three_settings());
   EXPECT_EQ(count(svg, "<circle"), 3u);
   EXPECT_EQ(count(svg, "r=\"5\" fill=\"#b4541a\""), 2u);  // the two on the front
-  EXPECT_THAT(svg, HasSubstr("fill=\"#b4541a\">quick&lt;b&gt;</text>"));
+  EXPECT_THAT(svg, HasSubstr("style=\"fill:#b4541a\">quick&lt;b&gt;</text>"));
   EXPECT_THAT(svg, HasSubstr("fill=\"none\" stroke=\"#b4541a\""));
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
   EXPECT_THAT(svg, Not(HasSubstr("views-16")));
