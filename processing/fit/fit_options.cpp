@@ -20,7 +20,6 @@ FitOptions FitOptions::preset(const std::string& quality) {
   FitOptions options;
   options.quality = quality;
   if (quality == "draft") {
-    options.errors = ErrorSource::Given;  // one search for materials instead of two
     options.interreflections.wanted = false;
   } else if (quality == "reference") {
     options.learning_lumitexels = 50000;  // where there are twice as many, the others judge choices
@@ -40,7 +39,6 @@ FitOptions as_published(FitOptions options) {
   options.method = FitMethod::Paper;
   if (options.materials == 0) options.materials = kMaterialsOfThePaper;
   options.family = BrdfFamily::Lafortune;
-  options.errors = ErrorSource::Auto;  // it has its own, and asks for none
   options.most_lobes = 1;
   options.lobe_shapes = LobeShapes::Separate;
   options.normals = NormalChoice::Mesh;

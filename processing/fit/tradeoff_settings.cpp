@@ -20,7 +20,7 @@ std::vector<TradeoffSetting> all_settings(std::optional<int> materials) {
     if (materials) settings.back().options.materials = *materials;
     return settings.back();
   };
-  add("draft", "draft preset: errors given, light between surfaces left in", "draft");
+  add("draft", "draft preset: light between surfaces left in", "draft");
   add(kStandardSetting, "standard preset: learnt on 2,000 points, up to two Lafortune lobes, normals where they pay, light between surfaces taken out once");
   for (const std::size_t learning : {500u, 1000u, 5000u, 10000u}) {
     const std::string number = std::to_string(learning);

@@ -279,7 +279,8 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
   command->add_option("SESSION", settings->session, "Session to fit: captured or imported")->required();
   command->add_option("--out", settings->out, "Folder of the model; a model that is there is replaced")->required();
   command->add_option("--quality", settings->quality,
-                      "draft: light between surfaces is left in, and errors are not estimated: quicker; standard: with both; reference: light in up to four rounds, materials learnt on 50,000 surface points instead of 2,000, fitted to all instead of 2,000, "
+                      "draft: light between surfaces is left in, which makes evaluate, render and report several times as quick; standard: it is taken out; "
+                      "reference: in up to four rounds, with materials learnt on 50,000 surface points instead of 2,000, fitted to all instead of 2,000, "
                       "and lobes as the samples ask for")
       ->capture_default_str();
   command->add_option("--materials", settings->materials, "How many materials to look for, 1 to 64, or auto: as many as the samples ask for, at most 20 (default: auto, with --method paper, which does not choose, 4)");
@@ -307,7 +308,7 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
   command->add_option("--errors", settings->errors,
                       "What a fit takes for noise. given: 30 % of each prediction and of the median; estimated: what each material's "
                       "residuals say, outliers counting less; labels: estimated for telling materials apart, given for fitting "
-                      "them; auto: whichever predicts left-out samples best, and estimated also where it loses next to nothing (default: auto, with --quality draft given)");
+                      "them; auto: whichever predicts left-out samples best, and estimated also where it loses next to nothing (default: auto)");
   command->add_flag("--principal-functions", settings->principal_functions,
                     "Also move the basis BRDFs of each material (principal function analysis), where left-out surface points are "
                     "then predicted better; always with --method paper");
