@@ -1,19 +1,24 @@
 #include "processing/brdf/choice.h"
 
 #include <cmath>
+#include <numeric>
 
 namespace lumitexel {
 
-Gain gain_of(const std::vector<double>& later, const std::vector<double>& earlier) {
-  double difference = 0.0, squares = 0.0, total = 0.0;
-  for (std::size_t i = 0; i < earlier.size(); ++i) {
-    const double less = earlier[i] - later[i];
-    difference += less;
-    squares += less * less;
-    total += earlier[i];
+PairedDifference paired_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t l = 0; l < a.size(); ++l) {
+    sum += a[l] - b[l];
+    squares += (a[l] - b[l]) * (a[l] - b[l]);
   }
+  return {sum, std::sqrt(squares)};
+}
+
+Gain gain_of(const std::vector<double>& later, const std::vector<double>& earlier) {
+  const double total = std::accumulate(earlier.begin(), earlier.end(), 0.0);
   if (total <= 0.0) return {};
-  return {difference / total, std::sqrt(squares) / total};
+  const PairedDifference less = paired_difference(earlier, later);
+  return {less.sum / total, less.sigma / total};
 }
 
 }  // namespace lumitexel

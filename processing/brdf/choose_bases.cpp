@@ -4,11 +4,6 @@
 
 namespace lumitexel {
 
-bool worth_having(const Gain& gain) {
-  constexpr double kStandardErrors = 2.0;
-  return gain.share > kLeastBasisGain && gain.share > kStandardErrors * gain.sigma;
-}
-
 BasesChoice choose_bases(const Observations& observations, const std::vector<std::size_t>& members, const std::vector<Brdf>& basis,
                          const ErrorModel& error, Precision precision) {
   const auto with = [&](std::size_t bases) {

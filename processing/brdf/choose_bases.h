@@ -9,20 +9,14 @@
 
 namespace lumitexel {
 
-// Of the left-out error: for less, neither more functions nor other ones are worth having.
-inline constexpr double kLeastBasisGain = 0.005;
-
 struct BasesChoice {
   std::size_t bases = 0;
   PriorChoice prior;         // with them
   std::optional<Gain> gain;  // of all of `basis` over the material's own variations; nothing where there is no more
 };
 
-// By kLeastBasisGain and by two standard errors.
-bool worth_having(const Gain& gain);
-
 // Either the material with its variations (kVariations of material_basis.h), or all of `basis`, if left-out samples of the members are then
-// predicted better as worth_having asks. The material alone is not asked: it is what a
+// predicted better as worth_having (choice.h) asks. The material alone is not asked: it is what a
 // prior under which nothing varies makes of any basis.
 BasesChoice choose_bases(const Observations& observations, const std::vector<std::size_t>& members, const std::vector<Brdf>& basis,
                          const ErrorModel& error, Precision precision);

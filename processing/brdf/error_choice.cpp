@@ -5,7 +5,7 @@
 namespace lumitexel {
 namespace {
 
-constexpr double kStandardErrors = 2.0, kShare = 0.005, kMostLoss = 0.02;
+constexpr double kMostLoss = 0.02;
 
 std::vector<double> values(const std::vector<SquaredError>& errors, double SquaredError::*kind) {
   std::vector<double> all;
@@ -19,11 +19,11 @@ Gain gain(const std::vector<SquaredError>& later, const std::vector<SquaredError
   return gain_of(relative_errors(later, scale), relative_errors(earlier, scale));
 }
 
-bool predicts_better(const std::vector<SquaredError>& later, const std::vector<SquaredError>& earlier) {
-  const Gain both = gain(later, earlier);
-  if (!(both.share > kStandardErrors * both.sigma)) return false;
+// of_both: the gain in the sum of the two kinds.
+bool predicts_better(const Gain& of_both, const std::vector<SquaredError>& later, const std::vector<SquaredError>& earlier) {
+  if (!is_sure(of_both)) return false;
   for (const auto kind : {&SquaredError::clipped, &SquaredError::root}) {
-    if (excess_in_standard_errors(values(later, kind), values(earlier, kind)) > kStandardErrors) return false;
+    if (excess_in_standard_errors(values(later, kind), values(earlier, kind)) > kGainStandardErrors) return false;
   }
   return true;
 }
@@ -32,8 +32,8 @@ bool loses_little(const std::vector<SquaredError>& later, const std::vector<Squa
   for (const auto kind : {&SquaredError::clipped, &SquaredError::root}) {
     if (total_error(later).*kind > (1.0 + kMostLoss) * total_error(earlier).*kind) return false;
     std::vector<double> allowed = values(earlier, kind);
-    for (double& value : allowed) value *= 1.0 + kShare;
-    if (excess_in_standard_errors(values(later, kind), allowed) > kStandardErrors) return false;
+    for (double& value : allowed) value *= 1.0 + kLeastGainShare;
+    if (excess_in_standard_errors(values(later, kind), allowed) > kGainStandardErrors) return false;
   }
   return true;
 }
@@ -43,15 +43,15 @@ bool is_number(const std::vector<SquaredError>& errors) {
   return std::isfinite(total.clipped) && std::isfinite(total.root);
 }
 
-bool holds(Claim claim, const std::vector<SquaredError>& later, const std::vector<SquaredError>& earlier) {
+bool holds(Claim claim, const Gain& of_both, const std::vector<SquaredError>& later, const std::vector<SquaredError>& earlier) {
   if (!is_number(later)) return false;
   if (!is_number(earlier)) return true;
   switch (claim) {
-    case Claim::Richer: return gain(later, earlier).share >= kShare && predicts_better(later, earlier);
-    case Claim::Efficient: return loses_little(later, earlier) || predicts_better(later, earlier);
+    case Claim::Richer: return worth_having(of_both) && predicts_better(of_both, later, earlier);
+    case Claim::Efficient: return loses_little(later, earlier) || predicts_better(of_both, later, earlier);
     case Claim::Better: break;
   }
-  return predicts_better(later, earlier);
+  return predicts_better(of_both, later, earlier);
 }
 
 }  // namespace
@@ -60,8 +60,9 @@ std::size_t best_predictor(const std::string& of, const std::vector<Predictor>& 
   std::size_t best = 0;
   for (std::size_t i = 1; i < predictors.size(); ++i) {
     const std::vector<SquaredError>&later = *predictors[i].errors, &earlier = *predictors[best].errors;
-    const bool taken = holds(claim, later, earlier);
-    choices.push_back({of, predictors[i].name, predictors[best].name, gain(later, earlier), taken});
+    const Gain of_both = gain(later, earlier);
+    const bool taken = holds(claim, of_both, later, earlier);
+    choices.push_back({of, predictors[i].name, predictors[best].name, of_both, taken});
     if (taken) best = i;
   }
   return best;

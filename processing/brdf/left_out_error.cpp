@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "processing/brdf/choice.h"
 #include "processing/brdf/misfit.h"
 #include "processing/brdf/ordered_sum.h"
 #include "processing/brdf/prepared_brdf.h"
@@ -104,12 +105,8 @@ std::vector<double> relative_errors(const std::vector<SquaredError>& errors, con
 }
 
 double excess_in_standard_errors(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0, squares = 0.0;
-  for (std::size_t l = 0; l < a.size(); ++l) {
-    sum += a[l] - b[l];
-    squares += (a[l] - b[l]) * (a[l] - b[l]);
-  }
-  return squares > 0.0 ? sum / std::sqrt(squares) : 0.0;
+  const PairedDifference difference = paired_difference(a, b);
+  return difference.sigma > 0.0 ? difference.sum / difference.sigma : 0.0;
 }
 
 }  // namespace lumitexel

@@ -24,7 +24,9 @@ MaterialSearch search_with(ErrorSource errors, const Observations& observations,
                            const ClusterOptions& options, const std::function<void(int)>& report) {
   const int wanted = options.materials > 0 ? options.materials : kMostMaterials;
   const int most = wanted == 1 ? 1 : std::min(2 * wanted, wanted + kMostExtra);
-  MaterialSearch search{errors, options.fit, {}, {}, {}, false};
+  MaterialSearch search;
+  search.errors = errors;
+  search.fit = options.fit;
   search.fit.choose_lobes = false;
   search.fit.most_lobes = std::min(1, options.fit.most_lobes);
   search.fit.estimate_error = errors != ErrorSource::Given;
@@ -69,7 +71,11 @@ void give_lobes(MaterialSearch& search, const Observations& observations, const 
 
 // The number of materials and what they are fitted by stay.
 MaterialSearch adapted(const Clustering& before, const Observations& observations, const LumitexelList& selection, const ClusterOptions& options) {
-  MaterialSearch search{before.errors, options.fit, {}, before.choices, {}, true};
+  MaterialSearch search;
+  search.known_before = true;
+  search.errors = before.errors;
+  search.choices = before.choices;
+  search.fit = options.fit;
   search.fit.estimate_error = before.fit.estimate_error;
   if (before.fit.mean_fit) search.fit.mean_fit = options.fit.error;
   search.fit.family = before.fit.family;

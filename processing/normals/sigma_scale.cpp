@@ -45,8 +45,8 @@ double normal_sigma_scale(const CalibratedSession& session, const LumitexelSet& 
   for (std::size_t i = 0; i < judged.size(); ++i) {
     if (!judged[i]) continue;
     squares += (fitted[0].normal[i] - fitted[1].normal[i]).squaredNorm();
-    for (std::uint64_t k = 0; k < kDraws; ++k) {
-      squares -= (fitted[0].prior_draws[k][i] - fitted[1].prior_draws[k][i]).squaredNorm() / static_cast<double>(kDraws);
+    for (std::uint64_t k = 0; k < kSigmaDraws; ++k) {
+      squares -= (fitted[0].prior_draws[k][i] - fitted[1].prior_draws[k][i]).squaredNorm() / static_cast<double>(kSigmaDraws);
     }
     for (const FittedNormals& half : fitted) expected += 2.0 * std::pow(static_cast<double>(half.sigma.samples_rad[i]), 2);  // two axes
   }

@@ -236,12 +236,12 @@ template <typename RightSide, typename See>
 std::vector<float> drawn_sigmas(const NormalProblem& problem, const Loops& loops, LinearSystem& system, std::uint64_t first_seed,
                                 RightSide right_side, See see) {
   std::vector<double> squares(problem.lumitexels.size(), 0.0);
-  for (std::uint64_t k = 0; k < kDraws; ++k) {
+  for (std::uint64_t k = 0; k < kSigmaDraws; ++k) {
     std::mt19937_64 random(first_seed + k);
     std::normal_distribution<double> normal;
     system.right = right_side([&] { return normal(random); });
     const Steps steps = solve(problem, loops, system);
-    for (std::size_t i = 0; i < steps.size(); ++i) squares[i] += steps[i].squaredNorm() / (2.0 * kDraws);
+    for (std::size_t i = 0; i < steps.size(); ++i) squares[i] += steps[i].squaredNorm() / (2.0 * kSigmaDraws);
     see(steps);
   }
   std::vector<float> sigmas(squares.size());
@@ -284,7 +284,7 @@ NormalSigmas normal_sigmas(const NormalProblem& problem, const NormalField& fiel
   const auto of_prior = [&](const Draw& draw) { return prior_right(problem, loops, system, prior, draw); };
   NormalSigmas sigmas;
   sigmas.samples_rad = drawn_sigmas(problem, loops, system, 0, of_samples, [](const Steps&) {});
-  sigmas.prior_rad = drawn_sigmas(problem, loops, system, kDraws, of_prior, [&](const Steps& steps) {
+  sigmas.prior_rad = drawn_sigmas(problem, loops, system, kSigmaDraws, of_prior, [&](const Steps& steps) {
     if (draws != nullptr) draws->push_back(in_world(system, steps));
   });
   return sigmas;

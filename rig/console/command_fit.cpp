@@ -17,8 +17,8 @@ namespace lumitexel {
 namespace {
 
 struct FitSettings {
-  std::string session, out, quality = "standard", method = "lumitexel", bases = "auto", precision = "double";
-  std::string materials, family, errors, lobe_shapes, normals, interreflections;  // empty: as quality and method have it
+  std::string session, out, quality = "standard", method = "lumitexel", errors = "auto", bases = "auto", precision = "double";
+  std::string materials, family, lobe_shapes, normals, interreflections;  // empty: as quality and method have it
   std::optional<int> lobes;
   std::optional<double> intensity_weight;
   bool plain_projection = false, principal_functions = false;
@@ -78,7 +78,7 @@ FitOptions fit_options(const FitSettings& settings) {
   if (!settings.interreflections.empty()) {
     options.interreflections.wanted = named_value<bool>("--interreflections", settings.interreflections, {{"auto", true}, {"off", false}});
   }
-  if (!settings.errors.empty()) options.errors = named_value("--errors", settings.errors, error_words());
+  options.errors = named_value("--errors", settings.errors, error_words());
   options.layout = {named_value("--layout", settings.layout, layout_words()), settings.atlas_size};
   if (settings.atlas_size > 0 && options.layout.choice != LayoutChoice::Mesh) {
     throw BadInput("--atlas-size", std::to_string(settings.atlas_size) + " without --layout mesh", "--layout mesh");
@@ -279,7 +279,7 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
   command->add_option("SESSION", settings->session, "Session to fit: captured or imported")->required();
   command->add_option("--out", settings->out, "Folder of the model; a model that is there is replaced")->required();
   command->add_option("--quality", settings->quality,
-                      "draft: light between surfaces is left in, which makes evaluate, render and report several times as quick; standard: it is taken out; "
+                      "draft: light between surfaces is left in, and evaluate, render and report need not follow it either; standard: it is taken out; "
                       "reference: in up to four rounds, with materials learnt on 50,000 surface points instead of 2,000, fitted to all instead of 2,000, "
                       "and lobes as the samples ask for")
       ->capture_default_str();
@@ -308,7 +308,8 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
   command->add_option("--errors", settings->errors,
                       "What a fit takes for noise. given: 30 % of each prediction and of the median; estimated: what each material's "
                       "residuals say, outliers counting less; labels: estimated for telling materials apart, given for fitting "
-                      "them; auto: whichever predicts left-out samples best, and estimated also where it loses next to nothing (default: auto)");
+                      "them; auto: whichever predicts left-out samples best, and estimated also where it loses next to nothing")
+      ->capture_default_str();
   command->add_flag("--principal-functions", settings->principal_functions,
                     "Also move the basis BRDFs of each material (principal function analysis), where left-out surface points are "
                     "then predicted better; always with --method paper");

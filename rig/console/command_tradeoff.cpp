@@ -136,7 +136,7 @@ void add_tradeoff_command(CLI::App& app, CommandAction& action) {
   command->add_option("SESSION", arguments->session, "Session to fit, with held-out views")->required();
   command->add_option("--materials", arguments->materials, "Materials of every fit, 1 to 64, or auto (default: auto, but for settings that say how many, and the paper's method, which "
                       "does not choose: 4)");
-  command->add_flag("--reference,--full", arguments->full, "Also the reference preset, which takes several times as long");
+  command->add_flag("--reference,--full", arguments->full, "Also the reference preset, the most thorough");
   command->add_option("--only", arguments->only, "These settings only: " + setting_names())->delimiter(',')->type_name("NAME");
   command->footer(meanings(tradeoff_settings({}, true, {})));
   command->add_option("--keep", arguments->keep, "File of measurements, added to as they come; those it has of this session, setting, program and machine are not made again");

@@ -124,10 +124,14 @@ void print(const std::string& title, const std::vector<Row>& rows, std::size_t l
   for (const Row& row : rows) {
     if (row.samples >= least && row.samples <= most && row.sigma > 0.0) over.push_back(row.fitted * row.fitted / (2.0 * row.sigma * row.sigma));
   }
+  if (over.empty()) {
+    std::printf("\n");
+    return;
+  }
   std::sort(over.begin(), over.end());
   const double mean = std::accumulate(over.begin(), over.end(), 0.0) / static_cast<double>(over.size());
   // Of two axes that err normally the squares' median is ln 2.
-  std::printf("   %6.2f %6.2f\n", over.empty() ? 0.0 : std::sqrt(over[over.size() / 2] / std::numbers::ln2), std::sqrt(mean));
+  std::printf("   %6.2f %6.2f\n", std::sqrt(over[over.size() / 2] / std::numbers::ln2), std::sqrt(mean));
 }
 
 }  // namespace

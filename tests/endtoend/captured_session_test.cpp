@@ -103,7 +103,7 @@ void expect_replays(const TemporaryFolder& folder, const std::string& session, c
   ASSERT_EQ(replay.exit_code, 0) << replay.errors;
   EXPECT_EQ(replay.json().at("left_out"), nlohmann::json{"fit_007"});
   for (const std::string& command : {"verify " + shorter, "calibrate " + shorter,
-                                     "fit " + shorter + " --out " + shorter + "_model --quality draft --materials 2 --normals mesh --errors auto",
+                                     "fit " + shorter + " --out " + shorter + "_model --quality draft --materials 2 --normals mesh",
                                      "evaluate " + shorter + "_model " + shorter}) {
     const ProgramRun run = run_program(command);
     EXPECT_EQ(run.exit_code, 0) << command << '\n' << run.errors;
@@ -140,7 +140,7 @@ TEST(CapturedSession, BecomesAModelThatPredictsAHeldOutPhotograph) {
   // The goal of the whole rig, 5 mm at 1 m, though this camera has a quarter of its pixels.
   EXPECT_LT(calibrate.json().at("light_error_mm").at("max").get<double>(), 5.0);
 
-  const ProgramRun fit = run_program("fit " + session + " --out " + model + " --quality draft --errors auto --materials 4 --json");
+  const ProgramRun fit = run_program("fit " + session + " --out " + model + " --quality draft --materials 4 --json");
   ASSERT_EQ(fit.exit_code, 0) << fit.errors;
   EXPECT_EQ(fit.json().at("materials"), 4);
   EXPECT_EQ(fit.json().at("options").at("most_lobes"), 2) << "as the preset has it";

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tests/unit/bad_input_matcher.h"
 #include "tests/unit/sphere_session.h"
 
 namespace lumitexel {
@@ -88,6 +89,28 @@ TEST(FitModel, EveryTexelThatATriangleCanShowHasAMaterial) {
     EXPECT_NE(model.material[static_cast<std::size_t>(y) * static_cast<std::size_t>(model.width) + static_cast<std::size_t>(x)],
               Model::kNoMaterial);
   }
+}
+
+TEST(FitPresets, GoFromQuickToThoroughAndThePapersMethodTakesNothingFromThem) {
+  const FitOptions draft = FitOptions::preset("draft"), standard = FitOptions::preset("standard"), reference = FitOptions::preset("reference");
+  EXPECT_EQ(standard.most_lobes, 2);
+  EXPECT_EQ(standard.materials, 0);
+  EXPECT_FALSE(draft.interreflections.wanted);
+  EXPECT_EQ(draft.errors, ErrorSource::Auto);  // given ones fail with few photographs
+  EXPECT_TRUE(standard.interreflections.wanted);
+  EXPECT_GT(reference.interreflections.rounds, standard.interreflections.rounds);
+  EXPECT_GT(reference.learning_lumitexels, standard.learning_lumitexels);
+  EXPECT_FALSE(reference.family.has_value());
+  for (const FitOptions& preset : {draft, standard, reference}) {
+    const FitOptions paper = as_published(preset);
+    EXPECT_EQ(paper.family, BrdfFamily::Lafortune);
+    EXPECT_EQ(paper.most_lobes, 1);
+    EXPECT_EQ(paper.materials, kMaterialsOfThePaper);
+    EXPECT_EQ(paper.lobe_shapes, LobeShapes::Separate);
+    EXPECT_EQ(paper.normals, NormalChoice::Mesh);
+    EXPECT_FALSE(paper.interreflections.wanted);
+  }
+  EXPECT_BAD_INPUT(FitOptions::preset("best"), "--quality", "best");
 }
 
 }  // namespace

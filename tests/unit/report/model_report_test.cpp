@@ -97,14 +97,14 @@ TEST_F(ModelReport, NamesFromFilesCannotBecomeMarkup) {
 TEST_F(ModelReport, SaysWhatLeftOutSamplesDecided) {
   EXPECT_THAT(page(false), Not(HasSubstr("What the samples decided")));
   auto provenance = nlohmann::json::parse(model_.provenance_json);
-  provenance["choices"] = {{{"of", "bases of material 3"}, {"candidate", "7"}, {"over", "3"}, {"gain", 0.0123}, {"gain_sigma", 0.0045}, {"taken", true}},
+  provenance["choices"] = {{{"of", "functions mixed by a texel of material 3"}, {"candidate", "7"}, {"over", "3"}, {"gain", 0.0123}, {"gain_sigma", 0.0045}, {"taken", true}},
                           {{"of", "errors"}, {"candidate", "estimated"}, {"over", "labels"}, {"gain", nullptr}, {"gain_sigma", nullptr}, {"taken", false}}};
   provenance["normals_worth"] = {{"deviance_gain", 0.237}, {"deviance_gain_sigma", 0.0677}, {"left_out_samples", 51008}};
   provenance["normals"] = "fitted";
   model_.provenance_json = provenance.dump();
   const std::string html = page(false);
   EXPECT_THAT(html, HasSubstr("What the samples decided"));
-  EXPECT_THAT(html, HasSubstr("bases of material 3"));
+  EXPECT_THAT(html, HasSubstr("functions mixed by a texel of material 3"));
   EXPECT_THAT(html, HasSubstr("<td>3</td><td>7</td>"));
   EXPECT_THAT(html, HasSubstr("1.2 %"));
   EXPECT_THAT(html, HasSubstr("± 0.45 %"));

@@ -82,29 +82,6 @@ TEST(Tradeoff, SaysWhatToDoWhereNothingIsHeldOut) {
   EXPECT_BAD_INPUT(measure_tradeoff(session, tradeoff_settings(4, false, {}), nullptr, progress), "held out", "split", "lights.csv");
 }
 
-TEST(Presets, GoFromQuickToThoroughAndThePapersMethodTakesNothingFromThem) {
-  const FitOptions draft = FitOptions::preset("draft"), standard = FitOptions::preset("standard"), reference = FitOptions::preset("reference");
-  EXPECT_EQ(standard.most_lobes, 2);
-  EXPECT_EQ(standard.materials, 0);
-  EXPECT_FALSE(draft.interreflections.wanted);
-  EXPECT_EQ(draft.errors, ErrorSource::Auto);  // given ones fail with few photographs
-  EXPECT_TRUE(standard.interreflections.wanted);
-  EXPECT_GT(reference.interreflections.rounds, standard.interreflections.rounds);
-  EXPECT_GT(reference.learning_lumitexels, standard.learning_lumitexels);
-  EXPECT_FALSE(reference.family.has_value());
-  for (const FitOptions& preset : {draft, standard, reference}) {
-    const FitOptions paper = as_published(preset);
-    EXPECT_EQ(paper.family, BrdfFamily::Lafortune);
-    EXPECT_EQ(paper.most_lobes, 1);
-    EXPECT_EQ(paper.errors, ErrorSource::Auto);
-    EXPECT_EQ(paper.materials, kMaterialsOfThePaper);
-    EXPECT_EQ(paper.lobe_shapes, LobeShapes::Separate);
-    EXPECT_EQ(paper.normals, NormalChoice::Mesh);
-    EXPECT_FALSE(paper.interreflections.wanted);
-  }
-  EXPECT_BAD_INPUT(FitOptions::preset("best"), "--quality", "best");
-}
-
 TEST(TradeoffSettings, AreTheNamedOnesAndTheReferenceOnlyIfAsked) {
   const auto names = [](const std::vector<TradeoffSetting>& settings) {
     std::vector<std::string> result;
