@@ -12,6 +12,11 @@ constexpr double kLeastLogStrength = -16.0;  // 1e-7: off, but able to come back
 constexpr double kMostEnergy = 4.0;
 constexpr double kUsualMostLogExponent = 8.517193191416238;  // ln 5000
 constexpr double kUsualLeastLogAlpha = -3.912023005428146;   // ln 0.02
+// A lobe's value is exponential in its parameters, its slopes are not: a step that trusted them further could carry the lobe in one leap
+// between all samples, where nothing calls it back.
+constexpr double kLongestOfStrength = 2.302585092994046;  // ln 10
+constexpr double kLongestOfShape = 1.0986122886681098;    // ln 3
+constexpr double kLongestOfAim = 0.2;                     // radians
 
 }  // namespace
 
@@ -51,6 +56,27 @@ void BrdfParameters::clamp(Eigen::VectorXd& values) const {
     const Range bounds = range(i, values);
     values[i] = std::clamp(values[i], bounds.least, bounds.most);
   }
+}
+
+Eigen::VectorXd BrdfParameters::stepped(const Eigen::VectorXd& values, const Eigen::VectorXd& step) const {
+  Eigen::VectorXd reached = values + step;
+  const auto cut = [&](int i, double longest) { reached[i] = values[i] + std::clamp(step[i], -longest, longest); };
+  for (int lobe = 0; lobe < lobes(); ++lobe) {
+    for (int c = 0; c < channels_; ++c) {
+      cut(log_strength(lobe, c), kLongestOfStrength);
+      cut(log_shape(lobe, c), kLongestOfShape);
+      if (shapes_ > 1) cut(aim(lobe, c), kLongestOfAim);
+    }
+  }
+  clamp(reached);
+  return reached;
+}
+
+std::vector<bool> BrdfParameters::unseen(const Eigen::VectorXd& curvature, double cost) const {
+  std::vector<bool> result(static_cast<std::size_t>(size()), false);
+  const double shows = std::numeric_limits<double>::epsilon() * cost;
+  for (int i = channels_; i < size(); ++i) result[static_cast<std::size_t>(i)] = curvature[i] < shows;
+  return result;
 }
 
 std::vector<bool> BrdfParameters::held(const Eigen::VectorXd& values, const Eigen::VectorXd& gradient) const {

@@ -51,8 +51,13 @@ class BrdfParameters {
   Eigen::VectorXd from(const Brdf& brdf) const;  // clamped; a shared shape is the first channel's
   Brdf brdf(const Eigen::VectorXd& values) const;
   void clamp(Eigen::VectorXd& values) const;
+  // values + step, cut where a lobe's parameters would leave what their slopes say anything about, and at the bounds.
+  Eigen::VectorXd stepped(const Eigen::VectorXd& values, const Eigen::VectorXd& step) const;
   // Whether each parameter stands at a bound beyond which the cost, by its gradient, would go on falling.
   std::vector<bool> held(const Eigen::VectorXd& values, const Eigen::VectorXd& gradient) const;
+  // Parameters of lobes that the samples do not see: a change by one would not show in the cost's last digit. curvature: the normal
+  // matrix's diagonal.
+  std::vector<bool> unseen(const Eigen::VectorXd& curvature, double cost) const;
 
  private:
   struct Range {

@@ -15,6 +15,11 @@ constexpr double kLeastDamping = 1e-9, kMostDamping = 1e9;
 // Share of the largest eigenvalue of the scaled normal matrix below which a direction counts as undetermined.
 constexpr double kRankTolerance = 1e-12;
 
+std::vector<bool> either(std::vector<bool> a, const std::vector<bool>& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] = a[i] || b[i];
+  return a;
+}
+
 struct Descent {
   Eigen::VectorXd values;
   int iterations = 0;  // steps tried
@@ -28,14 +33,15 @@ Descent levenberg_marquardt(const BrdfProblem& problem, const BrdfParameters& la
   NormalEquations equations = problem.linearise(descent.values);
   while (taken < max_iterations && !descent.converged) {
     ++descent.iterations;
-    const std::vector<bool> held = layout.held(descent.values, equations.gradient);
-    Eigen::VectorXd trial = descent.values + damped_step(equations, held, damping);
-    if (!trial.allFinite()) {
+    const std::vector<bool> held = either(layout.held(descent.values, equations.gradient),
+                                          layout.unseen(equations.matrix.diagonal(), equations.cost));
+    const Eigen::VectorXd step = damped_step(equations, held, damping);
+    if (!step.allFinite()) {
       damping *= 10.0;
       if (damping > kMostDamping) break;
       continue;
     }
-    layout.clamp(trial);
+    const Eigen::VectorXd trial = layout.stepped(descent.values, step);
     const double cost = problem.cost(trial);
     if (cost <= equations.cost) {
       descent.converged = equations.cost - cost <= kConvergedFall * equations.cost;
@@ -53,16 +59,18 @@ Descent levenberg_marquardt(const BrdfProblem& problem, const BrdfParameters& la
 
 // Inverse of the normal matrix over the free parameters, scaled to a unit diagonal first; what is not determined gets no
 // variance and sets rank_deficient.
-Eigen::MatrixXd covariance_of(const NormalEquations& equations, const std::vector<bool>& held, bool& rank_deficient) {
+Eigen::MatrixXd covariance_of(const NormalEquations& equations, const std::vector<bool>& held, const std::vector<bool>& unseen,
+                              bool& rank_deficient) {
   const Eigen::Index n = equations.matrix.rows();
   Eigen::VectorXd scale = Eigen::VectorXd::Zero(n);
   int wanted = 0;
   for (Eigen::Index i = 0; i < n; ++i) {
     const double diagonal = equations.matrix(i, i);
     if (held[static_cast<std::size_t>(i)]) continue;
-    if (diagonal > 0.0) scale[i] = 1.0 / std::sqrt(diagonal);
+    const bool seen = diagonal > 0.0 && !unseen[static_cast<std::size_t>(i)];
+    if (seen) scale[i] = 1.0 / std::sqrt(diagonal);
     else rank_deficient = true;
-    wanted += diagonal > 0.0;
+    wanted += seen;
   }
   const Eigen::MatrixXd scaled = scale.asDiagonal() * equations.matrix * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
@@ -83,7 +91,8 @@ void state_uncertainty(const BrdfProblem& problem, const BrdfParameters& layout,
   const double residuals = problem.total_weight() * layout.channels();
   fit.chi_squared = residuals > 0.0 ? equations.cost / residuals : 0.0;
   const double spread = equations.cost / std::max(1.0, residuals - layout.size());
-  fit.covariance = spread * covariance_of(equations, layout.held(values, equations.gradient), fit.rank_deficient);
+  fit.covariance = spread * covariance_of(equations, layout.held(values, equations.gradient),
+                                          layout.unseen(equations.matrix.diagonal(), equations.cost), fit.rank_deficient);
 }
 
 }  // namespace

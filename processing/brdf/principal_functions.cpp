@@ -30,7 +30,7 @@ class PrincipalProblem {
 
   Eigen::VectorXd start(const std::vector<Brdf>& basis) const {
     Eigen::VectorXd values(size_);
-    for (std::size_t k = 0; k < layouts_.size(); ++k) part(values, k) = layouts_[k].from(basis[k]);
+    for (std::size_t k = 0; k < layouts_.size(); ++k) values.segment(offsets_[k], layouts_[k].size()) = layouts_[k].from(basis[k]);
     return values;
   }
 
@@ -39,12 +39,12 @@ class PrincipalProblem {
     return basis;
   }
 
-  void clamp(Eigen::VectorXd& values) const {
+  Eigen::VectorXd stepped(const Eigen::VectorXd& values, const Eigen::VectorXd& step) const {
+    Eigen::VectorXd reached(values.size());
     for (std::size_t k = 0; k < layouts_.size(); ++k) {
-      Eigen::VectorXd own = part(values, k);
-      layouts_[k].clamp(own);
-      part(values, k) = own;
+      reached.segment(offsets_[k], layouts_[k].size()) = layouts_[k].stepped(part(values, k), part(step, k));
     }
+    return reached;
   }
 
   // Projects every lumitexel on the basis: the cost, and the weights.
@@ -78,11 +78,13 @@ class PrincipalProblem {
     return sums;
   }
 
-  std::vector<bool> held(const Eigen::VectorXd& values, const Eigen::VectorXd& gradient) const {
+  // At a bound beyond which the cost falls, or unseen by the samples.
+  std::vector<bool> held(const Eigen::VectorXd& values, const NormalEquations& equations, double cost) const {
     std::vector<bool> all;
     for (std::size_t k = 0; k < layouts_.size(); ++k) {
-      const auto own = layouts_[k].held(values.segment(offsets_[k], layouts_[k].size()), gradient.segment(offsets_[k], layouts_[k].size()));
-      all.insert(all.end(), own.begin(), own.end());
+      const auto at_bound = layouts_[k].held(part(values, k), part(equations.gradient, k));
+      const auto unseen = layouts_[k].unseen(part(equations.matrix.diagonal(), k), cost);
+      for (std::size_t i = 0; i < at_bound.size(); ++i) all.push_back(at_bound[i] || unseen[i]);
     }
     return all;
   }
@@ -90,9 +92,7 @@ class PrincipalProblem {
   std::size_t lumitexels() const { return lumitexels_.size(); }
 
  private:
-  Eigen::VectorBlock<Eigen::VectorXd> part(Eigen::VectorXd& values, std::size_t k) const {
-    return values.segment(offsets_[k], layouts_[k].size());
-  }
+  Eigen::VectorXd part(const Eigen::VectorXd& values, std::size_t k) const { return values.segment(offsets_[k], layouts_[k].size()); }
 
   void add(const std::vector<BrdfSlopes>& models, const Observation& sample, const SampleEquations& equations, const BasisVector& weights,
            NormalEquations& sums) const {
@@ -153,11 +153,11 @@ PrincipalFunctions principal_functions(const Observations& observations, const L
   while (result.iterations < options.max_iterations && !converged) {
     ++result.iterations;
     const NormalEquations equations = problem.linearise(values, result.basis, weights);
-    const std::vector<bool> held = problem.held(values, equations.gradient);
+    const std::vector<bool> held = problem.held(values, equations, cost);
     for (bool improved = false; !improved && !converged;) {
-      Eigen::VectorXd trial = values + damped_step(equations, held, damping);
-      if (!trial.allFinite()) trial = values;
-      problem.clamp(trial);
+      Eigen::VectorXd step = damped_step(equations, held, damping);
+      if (!step.allFinite()) step.setZero();
+      const Eigen::VectorXd trial = problem.stepped(values, step);
       const std::vector<Brdf> trial_basis = problem.basis_at(trial, result.basis);
       std::vector<BasisVector> trial_weights;
       const double trial_cost = problem.project(trial_basis, trial_weights);

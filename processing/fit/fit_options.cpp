@@ -20,6 +20,7 @@ FitOptions FitOptions::preset(const std::string& quality) {
   FitOptions options;
   options.quality = quality;
   if (quality == "draft") {
+    options.normals = NormalChoice::Mesh;
     options.interreflections.wanted = false;
   } else if (quality == "reference") {
     options.learning_lumitexels = 50000;  // where there are twice as many, the others judge choices

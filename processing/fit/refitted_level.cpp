@@ -15,6 +15,7 @@
 namespace lumitexel {
 namespace {
 
+constexpr double kMeanNormalSigma_rad = 0.03;  // of a mean of fitted normals, per axis
 constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
 
 struct ViewSum {
@@ -78,10 +79,25 @@ void take_out_indirect(const CalibratedSession& session, const Model& model, Lum
   }
 }
 
-void fit_level_normals(const CalibratedSession& session, const Model& model, const std::vector<int>& label, int width, double median,
-                       LumitexelSet& set) {
+// The means of the model's normals, where the texels have some.
+void turn_to(const Model& averaged, LumitexelSet& set) {
+  for (LumitexelTile& tile : set.tiles) {
+    for (std::size_t i = 0; i < tile.size(); ++i) {
+      const float* n = &averaged.normal.data[3 * static_cast<std::size_t>(tile.texel[i])];
+      const Eigen::Vector3d normal = Eigen::Vector3f(n[0], n[1], n[2]).cast<double>();
+      if (normal.norm() > 0.5) tile.normal[i] = normal.normalized();
+    }
+  }
+}
+
+// From the means of the model's normals, which are far nearer than the mesh's.
+void fit_level_normals(const CalibratedSession& session, const Model& model, const Model& averaged, const std::vector<int>& label,
+                       double median, LumitexelSet& set) {
+  turn_to(averaged, set);
   const DirectedLumitexels directed(session, set);
-  const std::vector<Eigen::Vector3d> normals = fit_normals(directed, lumitexel_neighbours(directed, width), bases_of(model), label, median, {}, Uncertainty::None).normal;
+  NormalFitOptions options;
+  options.prior.coarse_sigma_rad = kMeanNormalSigma_rad;
+  const std::vector<Eigen::Vector3d> normals = fit_normals(directed, lumitexel_neighbours(directed, averaged.width), bases_of(model), label, median, options, Uncertainty::None).normal;
   turn(normals, set);
 }
 
@@ -143,7 +159,7 @@ Model refitted_level(const Model& model, const Model& averaged, const LumitexelS
   Observations observations = observe(session, set);
   const double median = median_reflectance(observations);
   if (has_normals(model)) {
-    fit_level_normals(session, model, label, layout.width, median, set);
+    fit_level_normals(session, model, averaged, label, median, set);
     observations = observe(session, set);
   }
   const ErrorModel error = error_model(observations, {});

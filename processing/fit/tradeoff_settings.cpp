@@ -20,7 +20,7 @@ std::vector<TradeoffSetting> all_settings(std::optional<int> materials) {
     if (materials) settings.back().options.materials = *materials;
     return settings.back();
   };
-  add("draft", "draft preset: light between surfaces left in", "draft");
+  add("draft", "draft preset: the mesh's normals, and light between surfaces left in", "draft");
   add(kStandardSetting, "standard preset: learnt on 2,000 points, up to two Lafortune lobes, normals where they pay, light between surfaces taken out once");
   for (const std::size_t learning : {500u, 1000u, 5000u, 10000u}) {
     const std::string number = std::to_string(learning);
@@ -46,9 +46,7 @@ std::vector<TradeoffSetting> all_settings(std::optional<int> materials) {
   add("bases-8", "and other materials, asked for or not").options.bases = kMaxBasis;
   add("float", "weights of texels from values in float").options.precision = Precision::Float;
   add("normals-mesh", "the mesh's normals, nothing fitted").options.normals = NormalChoice::Mesh;
-  FitOptions& direct = add("mesh-direct", "the mesh's normals, and light between surfaces left in").options;
-  direct.normals = NormalChoice::Mesh;
-  direct.interreflections.wanted = false;
+  add("direct", "light between surfaces left in").options.interreflections.wanted = false;
   FitOptions& paper = add(kPaperSetting, "clustering, fits and projection as published").options;
   paper = as_published(paper);
   for (const std::size_t views : {16u, 12u, 8u}) {

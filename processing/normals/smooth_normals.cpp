@@ -5,8 +5,10 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <span>
 
 #include "processing/brdf/ordered_sum.h"
 
@@ -16,6 +18,8 @@ namespace {
 constexpr double kEdgeFreedom = 4.0;     // of Student's t over differences between neighbours
 constexpr double kLeastInformation = 1e-6;  // per square radian, so that a lumitexel without samples has a factor, too
 constexpr int kMostCgSteps = 60;
+constexpr double kLeastFacing = 0.02;  // cosine between normal and view: flatter, and fifty texels share a pixel
+constexpr int kMostHalvings = 6;
 constexpr double kCgGain = 1e-3;         // of the residual: Gauss-Newton asks for no more
 
 using Steps = std::vector<Eigen::Vector2d>;
@@ -187,11 +191,26 @@ Steps solve(const NormalProblem& problem, const Loops& loops, const LinearSystem
   return x;
 }
 
-void take(const LinearSystem& system, const Steps& steps, double largest_rad, NormalField& field) {
-  for_each_block(steps.size(), [&](std::size_t i) {
+// Whether every photograph that gave a sample can have seen a surface with this normal.
+bool visible(const Eigen::Vector3d& normal, std::span<const DirectedSample> samples) {
+  return std::all_of(samples.begin(), samples.end(), [&](const DirectedSample& sample) { return normal.dot(sample.wo) > kLeastFacing; });
+}
+
+// A normal stays in the hemisphere that its photographs can see: a step that leaves it is halved until it does not, or not taken. Facing away
+// would explain any dark sample.
+void take(const NormalProblem& problem, const LinearSystem& system, const Steps& steps, double largest_rad, NormalField& field) {
+  Buffers buffers;
+  oneapi::tbb::parallel_for(std::size_t{0}, steps.size(), [&](std::size_t i) {
+    std::vector<DirectedSample>& samples = buffers.local();
+    problem.lumitexels.samples_of(i, samples);
     const double length = steps[i].norm();
-    const double share = length > largest_rad ? largest_rad / length : 1.0;
-    field.normal[i] = moved(field.normal[i], system.frame[i], share * steps[i]);
+    double share = length > largest_rad ? largest_rad / length : 1.0;
+    for (int halving = 0; halving <= kMostHalvings; ++halving, share *= 0.5) {
+      const Eigen::Vector3d reached = moved(field.normal[i], system.frame[i], share * steps[i]);
+      if (!visible(reached, samples)) continue;
+      field.normal[i] = reached;
+      return;
+    }
   });
 }
 
@@ -318,7 +337,7 @@ NormalField smooth_normals(const NormalProblem& problem, NormalField field, cons
   const Loops loops(problem);
   for (int step = 0; step < options.steps; ++step) {
     const LinearSystem system = linearise(problem, loops, field, options.prior);
-    take(system, solve(problem, loops, system), options.largest_step_rad, field);
+    take(problem, system, solve(problem, loops, system), options.largest_step_rad, field);
     follow_with_weights(problem, field);
     after_step(step + 1);
   }

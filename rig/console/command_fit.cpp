@@ -279,8 +279,8 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
   command->add_option("SESSION", settings->session, "Session to fit: captured or imported")->required();
   command->add_option("--out", settings->out, "Folder of the model; a model that is there is replaced")->required();
   command->add_option("--quality", settings->quality,
-                      "draft: light between surfaces is left in, and evaluate, render and report need not follow it either; standard: it is taken out; "
-                      "reference: in up to four rounds, with materials learnt on 50,000 surface points instead of 2,000, fitted to all instead of 2,000, "
+                      "draft: the mesh's normals, and light between surfaces left in; standard: normals where they pay, that light taken out; "
+                      "reference: that light in up to four rounds, with materials learnt on 50,000 surface points instead of 2,000, fitted to all instead of 2,000, "
                       "and lobes as the samples ask for")
       ->capture_default_str();
   command->add_option("--materials", settings->materials, "How many materials to look for, 1 to 64, or auto: as many as the samples ask for, at most 20 (default: auto, with --method paper, which does not choose, 4)");
@@ -294,7 +294,7 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
   command->add_option("--normals", settings->normals,
                       "fitted: normals finer than the mesh's, from all photographs, and then everything once more on them; texel: the same, each texel by "
                       "its own samples alone, as in the paper; mesh: the mesh's own; auto: fitted where photographs left out for it are then predicted better (default: auto, with "
-                      "--method paper mesh)");
+                      "--quality draft and --method paper mesh)");
   command->add_option("--interreflections", settings->interreflections,
                       "auto: light between the object's own surfaces is predicted and taken out of the samples where it can matter; off "
                       "(default: auto, with --quality draft and --method paper off)");

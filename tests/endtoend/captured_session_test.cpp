@@ -140,7 +140,7 @@ TEST(CapturedSession, BecomesAModelThatPredictsAHeldOutPhotograph) {
   // The goal of the whole rig, 5 mm at 1 m, though this camera has a quarter of its pixels.
   EXPECT_LT(calibrate.json().at("light_error_mm").at("max").get<double>(), 5.0);
 
-  const ProgramRun fit = run_program("fit " + session + " --out " + model + " --quality draft --materials 4 --json");
+  const ProgramRun fit = run_program("fit " + session + " --out " + model + " --quality draft --normals auto --materials 4 --json");
   ASSERT_EQ(fit.exit_code, 0) << fit.errors;
   EXPECT_EQ(fit.json().at("materials"), 4);
   EXPECT_EQ(fit.json().at("options").at("most_lobes"), 2) << "as the preset has it";

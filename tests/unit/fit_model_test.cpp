@@ -96,7 +96,9 @@ TEST(FitPresets, GoFromQuickToThoroughAndThePapersMethodTakesNothingFromThem) {
   EXPECT_EQ(standard.most_lobes, 2);
   EXPECT_EQ(standard.materials, 0);
   EXPECT_FALSE(draft.interreflections.wanted);
-  EXPECT_EQ(draft.errors, ErrorSource::Auto);  // given ones fail with few photographs
+  EXPECT_EQ(draft.normals, NormalChoice::Mesh);
+  EXPECT_EQ(draft.errors, ErrorSource::Auto);  // given ones are less exact with few photographs
+  EXPECT_EQ(standard.normals, NormalChoice::Auto);
   EXPECT_TRUE(standard.interreflections.wanted);
   EXPECT_GT(reference.interreflections.rounds, standard.interreflections.rounds);
   EXPECT_GT(reference.learning_lumitexels, standard.learning_lumitexels);

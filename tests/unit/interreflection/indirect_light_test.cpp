@@ -112,7 +112,7 @@ double albedo_after(int rounds) {
   return albedo;
 }
 
-// Taken for the lamp's, the light between surfaces makes the bowl two fifths too bright. Every preset has to help: draft has one round, standard two,
+// Taken for the lamp's, the light between surfaces makes the bowl two fifths too bright. Every preset that takes it out has to help: standard has one round,
 // reference four. A tenth is left of a fault of four tenths, then what 64 paths a sample and a bowl of flat triangles leave.
 TEST(IndirectRemoval, TheTrueAlbedoIsFoundWithinTheRoundsOfThePresets) {
   EXPECT_GT(albedo_after(0), 1.35 * kAlbedo);
