@@ -35,7 +35,7 @@ struct MaterialFit {
 
 // Grows the BRDF from diffuse light, lobe by lobe, each forward or (from the second on) retro-reflective, whichever explains more.
 // A lobe stays if it lowers the criterion: the Bayesian information criterion with the likelihood tempered by the error model's
-// `independence`, since samples of one lumitexel err together. With a `start`, as many lobes as it has begin where its own are.
+// `independence`, since samples of one lumitexel err together, and predicts photographs left out (left_out_photographs.h). With a `start`, as many lobes as it has begin where its own are.
 MaterialFit fit_material(FitSamples samples, int channels, const Brdf* start, const MaterialFitOptions& options);
 
 // The options of a fit that keeps the number and kind of lobes of `model`.

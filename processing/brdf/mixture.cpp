@@ -62,6 +62,10 @@ double normalise(double* log_probability, std::size_t count) {
   return most + std::log(sum);
 }
 
+std::uint16_t view_of(const Observations& observations, const Observation& sample) {
+  return observations.view.empty() ? std::uint16_t{0} : observations.view[static_cast<std::size_t>(&sample - observations.samples.data())];
+}
+
 template <typename Misfit>
 Responsibilities responsibilities_by(const std::vector<Misfit>& materials, const Mixture& mixture, const Observations& observations,
                                      const LumitexelList& lumitexels) {
@@ -113,7 +117,7 @@ std::vector<FitSample> samples_of(const Observations& observations, const Lumite
   for (std::size_t l = 0; l < lumitexels.size(); ++l) {
     if (r.at(l, k) < kLeastProbability) continue;
     for (const Observation& sample : observations.of(lumitexels[l])) {
-      samples.push_back({&sample, r.at(l, k), static_cast<std::uint32_t>(lumitexels[l])});
+      samples.push_back({&sample, r.at(l, k), static_cast<std::uint32_t>(lumitexels[l]), view_of(observations, sample)});
     }
   }
   return samples;
@@ -122,7 +126,9 @@ std::vector<FitSample> samples_of(const Observations& observations, const Lumite
 std::vector<FitSample> samples_of(const Observations& observations, const LumitexelList& lumitexels) {
   std::vector<FitSample> samples;
   for (const std::size_t i : lumitexels) {
-    for (const Observation& sample : observations.of(i)) samples.push_back({&sample, 1.0, static_cast<std::uint32_t>(i)});
+    for (const Observation& sample : observations.of(i)) {
+      samples.push_back({&sample, 1.0, static_cast<std::uint32_t>(i), view_of(observations, sample)});
+    }
   }
   return samples;
 }

@@ -40,6 +40,7 @@ struct FitSample {
   const Observation* observation = nullptr;
   double share = 1;
   std::uint32_t lumitexel = 0;  // samples of one lumitexel stand together
+  std::uint16_t view = 0;       // photograph, as in Observations; all 0 where nobody knows
 };
 using FitSamples = std::span<const FitSample>;
 
