@@ -55,8 +55,8 @@ class BrdfParameters {
   Eigen::VectorXd stepped(const Eigen::VectorXd& values, const Eigen::VectorXd& step) const;
   // Whether each parameter stands at a bound beyond which the cost, by its gradient, would go on falling.
   std::vector<bool> held(const Eigen::VectorXd& values, const Eigen::VectorXd& gradient) const;
-  // Parameters of lobes that the samples do not see: a change by one would not show in the cost's last digit. curvature: the normal
-  // matrix's diagonal.
+  // Parameters of lobes that the samples do not see: their curvature, the normal matrix's diagonal, is less than the cost's rounding, so that a
+  // step by one gains less than 3e-8 of the cost (2 sqrt(curvature cost), by Cauchy and Schwarz), which is less than a fit ends at.
   std::vector<bool> unseen(const Eigen::VectorXd& curvature, double cost) const;
 
  private:

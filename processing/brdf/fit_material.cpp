@@ -78,14 +78,12 @@ MaterialFit with_lobe(const MaterialFit& before, FitSamples samples, const Mater
   return best;
 }
 
-// `smaller` or `larger`, by the criterion and, where that has more lobes, by photographs left out; true for larger.
+// `smaller` or `larger`, which has more lobes, by the criterion and by photographs left out; true for larger.
 bool prefers(MaterialFit& smaller, MaterialFit& larger, FitSamples samples, const MaterialFitOptions& options) {
-  const MaterialFit& richer = smaller.model.brdf.lobes.size() > larger.model.brdf.lobes.size() ? smaller : larger;
-  const double independence = options.estimate_error ? richer.model.error.independence : 1.0;
+  const double independence = options.estimate_error ? larger.model.error.independence : 1.0;
   set_criterion(smaller, samples, independence, options);
   set_criterion(larger, samples, independence, options);
-  if (!(larger.criterion < smaller.criterion)) return false;
-  return &richer != &larger || predicts_other_photographs(smaller.model, larger.model, samples, options);
+  return larger.criterion < smaller.criterion && predicts_other_photographs(smaller.model, larger.model, samples, options);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "processing/brdf/choice.h"
@@ -28,12 +29,16 @@ Brdf fitted_to(const Brdf& start, FitSamples samples, const ErrorModel& error, c
   return fit_brdf(start, samples, fit).brdf;
 }
 
-// `richer` learnt from these samples, from `smaller` that they made: a lobe that only the photographs left out show would else stay where they put
-// it, since no other sample sees it.
+// `smaller`, fitted to these samples, with as many lobes as `richer`, the further ones sought anew: one that only the photographs left out show
+// would else stay where they put it, since no other sample sees it. Without them where these samples let none be sought.
 Brdf relearnt(const Brdf& richer, const Brdf& smaller, FitSamples samples, const ErrorModel& error, const MaterialFitOptions& options) {
   const std::vector<LobeBounds> bounds = refit_options({richer, error}, options).bounds;
   Brdf start = smaller;
-  while (start.lobes.size() < richer.lobes.size()) start = with_best_lobe(start, samples, bounds[start.lobes.size()], error);
+  while (start.lobes.size() < richer.lobes.size()) {
+    Brdf grown = with_best_lobe(start, samples, bounds[start.lobes.size()], error);
+    if (grown.lobes.size() == start.lobes.size()) break;
+    start = std::move(grown);
+  }
   return fitted_to(start, samples, error, options);
 }
 

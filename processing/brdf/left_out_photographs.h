@@ -9,9 +9,9 @@ namespace lumitexel {
 
 inline constexpr int kPhotographFolds = 4;
 
-// Photographs are left out by turns, every fourth at a time, each at least once; both models are fitted to the others, the richer one's
+// Photographs are left out by turns, every fourth at a time, each once; both models are fitted to the others, the richer one's
 // further lobes sought anew, and compared by their misfit under the richer one's error model. True if the richer one's is less by more than
-// one standard error over photographs, and where there are fewer than two photographs to ask.
+// one standard error over photographs, and where there are fewer than two photographs to ask. A highlight in one photograph alone is refused.
 bool predicts_other_photographs(const MaterialModel& smaller, const MaterialModel& richer, FitSamples samples, const MaterialFitOptions& options);
 
 }  // namespace lumitexel

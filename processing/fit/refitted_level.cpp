@@ -15,7 +15,7 @@
 namespace lumitexel {
 namespace {
 
-constexpr double kMeanNormalSigma_rad = 0.03;  // of a mean of fitted normals, per axis
+constexpr double kMeanNormalSigma_rad = 0.03;  // of a mean of fitted normals, per axis: about the sigmas that fits state on O
 constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
 
 struct ViewSum {

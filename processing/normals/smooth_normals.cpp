@@ -191,9 +191,11 @@ Steps solve(const NormalProblem& problem, const Loops& loops, const LinearSystem
   return x;
 }
 
-// Whether every photograph that gave a sample can have seen a surface with this normal.
-bool visible(const Eigen::Vector3d& normal, std::span<const DirectedSample> samples) {
-  return std::all_of(samples.begin(), samples.end(), [&](const DirectedSample& sample) { return normal.dot(sample.wo) > kLeastFacing; });
+// The cosine between the normal and the view that sees it at the flattest; 1 without samples.
+double least_facing(const Eigen::Vector3d& normal, std::span<const DirectedSample> samples) {
+  double least = 1.0;
+  for (const DirectedSample& sample : samples) least = std::min(least, normal.dot(sample.wo));
+  return least;
 }
 
 // A normal stays in the hemisphere that its photographs can see: a step that leaves it is halved until it does not, or not taken. Facing away
@@ -205,9 +207,10 @@ void take(const NormalProblem& problem, const LinearSystem& system, const Steps&
     problem.lumitexels.samples_of(i, samples);
     const double length = steps[i].norm();
     double share = length > largest_rad ? largest_rad / length : 1.0;
+    const double allowed = std::min(kLeastFacing, least_facing(field.normal[i], samples));  // a mean of normals may start below
     for (int halving = 0; halving <= kMostHalvings; ++halving, share *= 0.5) {
       const Eigen::Vector3d reached = moved(field.normal[i], system.frame[i], share * steps[i]);
-      if (!visible(reached, samples)) continue;
+      if (!(least_facing(reached, samples) >= allowed)) continue;
       field.normal[i] = reached;
       return;
     }

@@ -183,7 +183,7 @@ int run(const Options& options, const std::vector<double>& shifts_mm, const std:
 int main(int argc, char** argv) {
   CLI::App app("Poses and held-out error of an imported session, disturbed, before and after calibration");
   lumitexel::Options options;
-  std::string oracle, quality = "draft";
+  std::string oracle, quality = "standard";
   std::vector<double> shifts_mm{0.0, 0.2, 0.5, 1.0, 3.0}, turns_deg{0.0, 0.05, 0.1, 0.2, 0.5};
   int materials = 6, seeds = 1;
   double focal = 1.003;
