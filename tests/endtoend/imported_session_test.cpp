@@ -20,7 +20,7 @@ TEST(ImportedSession, BecomesAModelThatPredictsHeldOutPhotographs) {
   ASSERT_EQ(import.exit_code, 0) << import.errors;
   EXPECT_EQ(import.json().at("views"), 30);
 
-  const ProgramRun fit = run_program("fit " + session + " --out " + model + " --quality draft --normals auto --materials 6 --json");
+  const ProgramRun fit = run_program("fit " + session + " --out " + model + " --quality draft --materials 6 --json");
   ASSERT_EQ(fit.exit_code, 0) << fit.errors;
 
   const ProgramRun evaluate = run_program("evaluate " + model + " " + session + " --json");
