@@ -7,7 +7,7 @@
 namespace lumitexel {
 namespace {
 
-constexpr double kLeastLogStrength = -16.0;  // 1e-7: off, but able to come back
+constexpr double kLeastLogStrength = -16.0;  // 1e-7: off; comes back only where many samples ask for it, see unseen()
 // Four times all the light that arrives is more than coarse normals and glancing light can feign.
 constexpr double kMostEnergy = 4.0;
 constexpr double kUsualMostLogExponent = 8.517193191416238;  // ln 5000

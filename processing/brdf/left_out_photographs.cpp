@@ -15,10 +15,10 @@ namespace {
 constexpr double kStandardErrors = 1.0;
 
 // Of each photograph that has samples, in order, its place among them.
-std::map<std::uint16_t, int> places(FitSamples samples) {
-  std::map<std::uint16_t, int> place;
+std::map<std::uint16_t, std::size_t> places(FitSamples samples) {
+  std::map<std::uint16_t, std::size_t> place;
   for (const FitSample& sample : samples) place.emplace(sample.view, 0);
-  int next = 0;
+  std::size_t next = 0;
   for (auto& entry : place) entry.second = next++;
   return place;
 }
@@ -42,29 +42,25 @@ Brdf relearnt(const Brdf& richer, const Brdf& smaller, FitSamples samples, const
   return fitted_to(start, samples, error, options);
 }
 
-// Adds to each photograph of `left_out` its misfit.
-void add_misfits(const Brdf& brdf, const std::vector<FitSample>& left_out, const std::map<std::uint16_t, int>& place, const ErrorModel& error,
-                 std::vector<double>& sums) {
-  std::vector<std::vector<FitSample>> by_place(sums.size());
-  for (const FitSample& sample : left_out) by_place[static_cast<std::size_t>(place.at(sample.view))].push_back(sample);
-  for (std::size_t p = 0; p < sums.size(); ++p) {
-    if (!by_place[p].empty()) sums[p] += misfit(brdf, by_place[p], error);
-  }
-}
-
 }  // namespace
 
 bool predicts_other_photographs(const MaterialModel& smaller, const MaterialModel& richer, FitSamples samples, const MaterialFitOptions& options) {
-  const std::map<std::uint16_t, int> place = places(samples);
+  const std::map<std::uint16_t, std::size_t> place = places(samples);
   if (place.size() < 2) return true;
+  std::vector<std::vector<FitSample>> photographs(place.size());
+  for (const FitSample& sample : samples) photographs[place.at(sample.view)].push_back(sample);
   const ErrorModel& error = options.mean_fit ? *options.mean_fit : richer.error;
   std::vector<double> of_smaller(place.size()), of_richer(place.size());
-  for (int fold = 0; fold < std::min<int>(kPhotographFolds, static_cast<int>(place.size())); ++fold) {
-    std::vector<FitSample> kept, left_out;
-    for (const FitSample& sample : samples) (place.at(sample.view) % kPhotographFolds == fold ? left_out : kept).push_back(sample);
-    const Brdf plain = fitted_to(smaller.brdf, kept, error, options);
-    add_misfits(plain, left_out, place, error, of_smaller);
-    add_misfits(relearnt(richer.brdf, plain, kept, error, options), left_out, place, error, of_richer);
+  for (std::size_t fold = 0; fold < std::min(kPhotographFolds, place.size()); ++fold) {
+    std::vector<FitSample> kept;
+    for (const FitSample& sample : samples) {
+      if (place.at(sample.view) % kPhotographFolds != fold) kept.push_back(sample);
+    }
+    const Brdf plain = fitted_to(smaller.brdf, kept, error, options), more = relearnt(richer.brdf, plain, kept, error, options);
+    for (std::size_t p = fold; p < place.size(); p += kPhotographFolds) {
+      of_smaller[p] = misfit(plain, photographs[p], error);
+      of_richer[p] = misfit(more, photographs[p], error);
+    }
   }
   const PairedDifference gain = paired_difference(of_smaller, of_richer);
   return gain.sum > kStandardErrors * gain.sigma;  // false of what is no number

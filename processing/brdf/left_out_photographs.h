@@ -3,11 +3,13 @@
 // where other photographs find nothing.
 #pragma once
 
+#include <cstddef>
+
 #include "processing/brdf/fit_material.h"
 
 namespace lumitexel {
 
-inline constexpr int kPhotographFolds = 4;
+inline constexpr std::size_t kPhotographFolds = 4;
 
 // Photographs are left out by turns, every fourth at a time, each once; both models are fitted to the others, the richer one's
 // further lobes sought anew, and compared by their misfit under the richer one's error model. True if the richer one's is less by more than

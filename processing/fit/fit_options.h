@@ -52,8 +52,8 @@ struct FitOptions {
   // reflectance under everything. Both found on held-out photographs of two sessions; see the README.
   double relative_error = 0.3, error_floor_share = 0.3;
 
-  // standard: these defaults. draft: the mesh's normals, and light between surfaces left in. reference: learnt on 50,000, fitted to all, up to three lobes of the family and
-  // shapes that predict best, light taken out in up to four rounds. Throws BadInput on any other name.
+  // standard: these defaults. draft: the mesh's normals, and light between surfaces left in. reference: learnt on 50,000, fitted to all,
+  // up to three lobes of the family and shapes that predict best, light taken out in up to four rounds. Throws BadInput on any other name.
   static FitOptions preset(const std::string& quality);
 };
 

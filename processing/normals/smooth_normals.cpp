@@ -198,22 +198,29 @@ double least_facing(const Eigen::Vector3d& normal, std::span<const DirectedSampl
   return least;
 }
 
-// A normal stays in the hemisphere that its photographs can see: a step that leaves it is halved until it does not, or not taken. Facing away
-// would explain any dark sample.
+// Facing away would explain any dark sample, so a normal stays in the hemisphere that its photographs can see: a step that leaves it is halved
+// until it does not, or not taken.
+Eigen::Vector3d stepped(const Eigen::Vector3d& normal, const TangentFrame& frame, const Eigen::Vector2d& step, double largest_rad,
+                        std::span<const DirectedSample> samples) {
+  const double length = step.norm();
+  const double allowed = std::min(kLeastFacing, least_facing(normal, samples));  // a mean of normals may start below
+  double share = length > largest_rad ? largest_rad / length : 1.0;
+  for (int halving = 0; halving <= kMostHalvings; ++halving, share *= 0.5) {
+    const Eigen::Vector3d reached = moved(normal, frame, share * step);
+    if (least_facing(reached, samples) >= allowed) return reached;
+  }
+  return normal;
+}
+
+// Takes the steps; weights follow.
 void take(const NormalProblem& problem, const LinearSystem& system, const Steps& steps, double largest_rad, NormalField& field) {
   Buffers buffers;
   oneapi::tbb::parallel_for(std::size_t{0}, steps.size(), [&](std::size_t i) {
     std::vector<DirectedSample>& samples = buffers.local();
     problem.lumitexels.samples_of(i, samples);
-    const double length = steps[i].norm();
-    double share = length > largest_rad ? largest_rad / length : 1.0;
-    const double allowed = std::min(kLeastFacing, least_facing(field.normal[i], samples));  // a mean of normals may start below
-    for (int halving = 0; halving <= kMostHalvings; ++halving, share *= 0.5) {
-      const Eigen::Vector3d reached = moved(field.normal[i], system.frame[i], share * steps[i]);
-      if (!(least_facing(reached, samples) >= allowed)) continue;
-      field.normal[i] = reached;
-      return;
-    }
+    field.normal[i] = stepped(field.normal[i], system.frame[i], steps[i], largest_rad, samples);
+    field.weights[i].weight =
+        best_weights(problem.material_of(i), field.weights[i].weight, field.normal[i], samples, problem.lumitexels.channels());
   });
 }
 
@@ -289,16 +296,6 @@ NormalField field_on_mesh(const NormalProblem& problem) {
   return field;
 }
 
-void follow_with_weights(const NormalProblem& problem, NormalField& field) {
-  Buffers buffers;
-  oneapi::tbb::parallel_for(std::size_t{0}, field.normal.size(), [&](std::size_t i) {
-    std::vector<DirectedSample>& samples = buffers.local();
-    problem.lumitexels.samples_of(i, samples);
-    field.weights[i].weight =
-        best_weights(problem.material_of(i), field.weights[i].weight, field.normal[i], samples, problem.lumitexels.channels());
-  });
-}
-
 NormalSigmas normal_sigmas(const NormalProblem& problem, const NormalField& field, const NormalPrior& prior, std::vector<PriorDraw>* draws) {
   const Loops loops(problem);
   LinearSystem system = linearise(problem, loops, field, prior);
@@ -341,7 +338,6 @@ NormalField smooth_normals(const NormalProblem& problem, NormalField field, cons
   for (int step = 0; step < options.steps; ++step) {
     const LinearSystem system = linearise(problem, loops, field, options.prior);
     take(problem, system, solve(problem, loops, system), options.largest_step_rad, field);
-    follow_with_weights(problem, field);
     after_step(step + 1);
   }
   return field;

@@ -27,8 +27,6 @@ struct NormalField {
 
 // Every normal as the mesh has it, every texel its material's own BRDF: where the search starts.
 NormalField field_on_mesh(const NormalProblem& problem);
-// Best weights for the field's normals.
-void follow_with_weights(const NormalProblem& problem, NormalField& field);
 
 // From `start`; weights follow the normals in every step. Normals stay where every photograph that gave a sample can see them.
 NormalField smooth_normals(const NormalProblem& problem, NormalField start, const SmoothNormalOptions& options,

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "processing/brdf/fit_material.h"
+#include "processing/brdf/numerics/synthetic_observations.h"
 #include "tests/unit/synthetic_lumitexels.h"
 
 namespace lumitexel {
@@ -12,14 +13,7 @@ namespace {
 constexpr double kGrazingAim = 0.9353981633974483;  // the forward range's end: the peak is where the light comes in flat
 // Of the cost at which the iteration ends, 1e-7, the root, over the samples' spread.
 constexpr double kSettled = 1e-3;
-
-std::vector<FitSample> all_samples(const Observations& observations) {
-  std::vector<FitSample> list;
-  for (std::size_t i = 0; i < observations.lumitexels(); ++i) {
-    for (const Observation& sample : observations.of(i)) list.push_back({&sample, 1.0, static_cast<std::uint32_t>(i)});
-  }
-  return list;
-}
+constexpr double kRounding = 1e-12;
 
 Observations matte_samples() {
   std::mt19937 random(5);
@@ -56,17 +50,24 @@ TEST(UnseenLobe, DoesNotHoldUpTheRest) {
 }
 
 TEST(UnseenLobe, NoStepLeapsOverTheSamples) {
-  const Brdf start = one_lobe({0.1, 0.1, 0.1}, {0.1, 0.1, 0.1}, kMirrorAim, 10.0);
-  const BrdfParameters layout = parameters_of(start, {});
-  const Eigen::VectorXd values = layout.from(start);
-  const Eigen::VectorXd step = Eigen::VectorXd::Constant(layout.size(), 4.0);
-  const Eigen::VectorXd moved = layout.stepped(values, step) - values;
-  for (int c = 0; c < 3; ++c) {
-    EXPECT_DOUBLE_EQ(moved[layout.diffuse(c)], 4.0);  // the model is linear in it
-    EXPECT_LE(moved[layout.log_strength(0, c)], std::log(10.0) + 1e-12);
+  const Brdf start = one_lobe({8.0, 8.0, 8.0}, {0.1, 0.1, 0.1}, 0.0, 10.0);  // in the middle of what may be
+  BrdfFitOptions options;
+  options.bounds = {widest_bounds(BrdfFamily::Lafortune)};
+  for (const bool shared : {true, false}) {
+    options.shared_shape = shared;
+    const BrdfParameters layout = parameters_of(start, options);
+    const Eigen::VectorXd values = layout.from(start);
+    for (const double step : {4.0, -4.0, 0.01}) {
+      const Eigen::VectorXd moved = layout.stepped(values, Eigen::VectorXd::Constant(layout.size(), step)) - values;
+      const auto at_most = [&](double longest) { return std::copysign(std::min(std::abs(step), longest), step); };
+      for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(moved[layout.diffuse(c)], step, kRounding);  // the model is linear in it
+        EXPECT_NEAR(moved[layout.log_strength(0, c)], at_most(std::log(10.0)), kRounding);
+        EXPECT_NEAR(moved[layout.log_shape(0, c)], at_most(std::log(3.0)), kRounding);
+        EXPECT_NEAR(moved[layout.aim(0, c)], at_most(0.2), kRounding);
+      }
+    }
   }
-  EXPECT_LE(moved[layout.log_shape(0, 0)], std::log(3.0) + 1e-12);
-  EXPECT_LE(moved[layout.aim(0, 0)], 0.15 + 1e-12);  // the bound
 }
 
 // The scale of the reflectances has no say in what counts as seen.
