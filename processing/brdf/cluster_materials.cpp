@@ -22,12 +22,12 @@ std::vector<int> most_probable(const Responsibilities& r) {
 }
 
 // About `most` members of each material, of those in `all`.
-LumitexelList members_of_all(const std::vector<int>& label, const LumitexelList& all, std::size_t materials, std::size_t most) {
+LumitexelList members_of_all(const std::vector<int>& label, const LumitexelList& all, std::size_t materials, std::size_t most, int draw) {
   std::vector<LumitexelList> members(materials);
   for (std::size_t l = 0; l < all.size(); ++l) members[static_cast<std::size_t>(label[l])].push_back(all[l]);
   LumitexelList chosen;
   for (const LumitexelList& own : members) {
-    const LumitexelList some = thinned(own, most);
+    const LumitexelList some = thinned(own, most, draw);
     chosen.insert(chosen.end(), some.begin(), some.end());
   }
   std::sort(chosen.begin(), chosen.end());
@@ -101,7 +101,7 @@ Clustering cluster_materials(const Observations& observations, const LumitexelLi
   if (settled.most_lobes > search.fit.most_lobes) choose_lobes(mixture, observations, selection, r, settled, fits);
   const LumitexelList all = with_samples(observations);
   const std::vector<int> label = most_probable(responsibilities(mixture, observations, all));
-  const LumitexelList finalists = members_of_all(label, all, mixture.materials.size(), options.final_lumitexels);
+  const LumitexelList finalists = members_of_all(label, all, mixture.materials.size(), options.final_lumitexels, options.draw);
   r = maximise_expectation(mixture, observations, finalists, settled, {kFinalRounds, kFinalSettled});
   if (settled.estimate_error) settle_with_edges(mixture, observations, finalists, settled, r);
   choose_lobes(mixture, observations, finalists, r, settled, fits);
@@ -112,7 +112,7 @@ Clustering cluster_materials(const Observations& observations, const LumitexelLi
   mean.mean_fit.reset();
   mean.estimate_error = false;
   const Brdf start = fit_material(samples_of(observations, selection), observations.channels, nullptr, mean).model.brdf;
-  result.single = fit_material(samples_of(observations, thinned(all, options.final_lumitexels)), observations.channels, &start, mean).model;
+  result.single = fit_material(samples_of(observations, thinned(all, options.final_lumitexels, options.draw)), observations.channels, &start, mean).model;
   for (std::size_t k = 0; k < mixture.materials.size(); ++k) result.materials.push_back({mixture.materials[k], fits[k], 0});
   // The finalists were chosen alike from every material: how common each is, all lumitexels say.
   set_shares(responsibilities(mixture, observations, all), mixture);

@@ -34,6 +34,7 @@ struct ClusterOptions {
   ErrorSource errors = ErrorSource::Auto;
   int materials = 4;                    // 0: as many as the samples ask for, from a search that begins with about twice kMostMaterials
   std::size_t final_lumitexels = 5000;  // a material's final fit takes about so many of its members
+  int draw = 0;                         // which of them (draw_phase.h)
   MaterialFitOptions fit;               // its shared_shape is what `lobe_shapes` says
   bool any_family = false;              // true: fit.family, or another where that predicts left-out samples better
   LobeShapes lobe_shapes = LobeShapes::Shared;

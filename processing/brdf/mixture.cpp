@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "processing/brdf/draw_phase.h"
 #include "processing/brdf/estimate_error.h"
 #include "processing/brdf/misfit.h"
 #include "processing/brdf/ordered_sum.h"
@@ -85,10 +86,11 @@ Responsibilities responsibilities_by(const std::vector<Misfit>& materials, const
 
 }  // namespace
 
-LumitexelList thinned(const LumitexelList& list, std::size_t most) {
+LumitexelList thinned(const LumitexelList& list, std::size_t most, int draw) {
   const std::size_t stride = std::max<std::size_t>(1, (list.size() + most - 1) / std::max<std::size_t>(1, most));
   LumitexelList some;
-  for (std::size_t k = 0; k < list.size(); k += stride) some.push_back(list[k]);
+  const auto first = static_cast<std::size_t>(draw_phase(draw) * static_cast<double>(stride));
+  for (std::size_t k = first; k < list.size(); k += stride) some.push_back(list[k]);
   return some;
 }
 

@@ -30,8 +30,8 @@ struct Responsibilities {
 
 using LumitexelList = std::vector<std::size_t>;  // indices into Observations, ascending
 
-// Every so manieth, so that at most `most` remain.
-LumitexelList thinned(const LumitexelList& list, std::size_t most);
+// Every so manieth, so that at most `most` remain. draw: from which on (draw_phase.h).
+LumitexelList thinned(const LumitexelList& list, std::size_t most, int draw = 0);
 // Those with at least so many samples.
 LumitexelList with_samples(const Observations& observations, std::size_t fewest = 1);
 

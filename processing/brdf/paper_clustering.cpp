@@ -126,10 +126,10 @@ Clustering paper_clustering(const Observations& observations, const LumitexelLis
 
   const LumitexelList all = with_samples(observations);
   clusterer.assign(all, materials);
-  result.single = {clusterer.fit(thinned(all, options.final_lumitexels), nullptr).brdf, fit.error};
+  result.single = {clusterer.fit(thinned(all, options.final_lumitexels, options.draw), nullptr).brdf, fit.error};
   for (std::size_t k = 0; k < materials.brdfs.size(); ++k) {
     const LumitexelList members = PaperClusterer::members_of(all, materials.label, k);
-    const BrdfFit final_fit = clusterer.fit(thinned(members, options.final_lumitexels), &materials.brdfs[k]);
+    const BrdfFit final_fit = clusterer.fit(thinned(members, options.final_lumitexels, options.draw), &materials.brdfs[k]);
     if (!members.empty()) materials.brdfs[k] = final_fit.brdf;
     result.materials.push_back({{materials.brdfs[k], fit.error}, final_fit, 0});
   }

@@ -12,6 +12,7 @@ struct PaperOptions {
   int lobes = 1;                        // 1 to 3, each channel with shapes of its own
   double intensity_weight = 0.3;        // s of eq. 6: what a difference in intensity counts beside one in colour
   std::size_t final_lumitexels = 5000;  // of each material, in the final fit
+  int draw = 0;                         // which of them (draw_phase.h)
 };
 
 // Fits one BRDF to everything by absolute residuals (eq. 6), then: splits the material of largest total error E_f along the first

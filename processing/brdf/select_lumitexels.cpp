@@ -3,14 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "processing/brdf/draw_phase.h"
+
 namespace lumitexel {
 namespace {
 
 // `count` entries at equal distances.
-void take_spread(const std::vector<std::size_t>& from, std::size_t count, std::vector<std::size_t>& chosen) {
+void take_spread(const std::vector<std::size_t>& from, std::size_t count, double phase, std::vector<std::size_t>& chosen) {
   if (from.empty()) return;
   const double step = std::max(1.0, static_cast<double>(from.size()) / static_cast<double>(count));
-  for (double at = 0.0; at < static_cast<double>(from.size()); at += step) {
+  for (double at = phase * step; at < static_cast<double>(from.size()); at += step) {
     chosen.push_back(from[static_cast<std::size_t>(at)]);
   }
 }
@@ -25,7 +27,7 @@ double mirror_nearness(std::span<const Observation> samples) {
   return nearest;
 }
 
-std::vector<std::size_t> select_lumitexels(const Observations& observations, std::size_t count) {
+std::vector<std::size_t> select_lumitexels(const Observations& observations, std::size_t count, int draw) {
   std::vector<std::size_t> usable;
   for (std::size_t i = 0; i < observations.lumitexels(); ++i) {
     if (observations.of(i).size() >= kFewestSamples) usable.push_back(i);
@@ -41,8 +43,8 @@ std::vector<std::size_t> select_lumitexels(const Observations& observations, std
   std::sort(likely.begin(), likely.end());  // spread over the surface, not over the ranking
 
   std::vector<std::size_t> chosen;
-  take_spread(likely, count / 2, chosen);
-  take_spread(usable, count - count / 2, chosen);
+  take_spread(likely, count / 2, draw_phase(draw), chosen);
+  take_spread(usable, count - count / 2, draw_phase(draw), chosen);
   std::sort(chosen.begin(), chosen.end());
   chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
   return chosen;

@@ -15,7 +15,8 @@ double mirror_nearness(std::span<const Observation> samples);
 
 // At most `count` lumitexels with at least kFewestSamples samples, ascending: half of them spread over the third that came nearest to a
 // mirror reflection, half over all. All that qualify if there are no more than `count`. Deterministic.
+// draw: which of those that such a spread might choose (draw_phase.h).
 inline constexpr std::size_t kFewestSamples = 3;  // fewer cannot tell a lobe from diffuse light
-std::vector<std::size_t> select_lumitexels(const Observations& observations, std::size_t count);
+std::vector<std::size_t> select_lumitexels(const Observations& observations, std::size_t count, int draw = 0);
 
 }  // namespace lumitexel

@@ -44,6 +44,7 @@ struct FitOptions {
   double intensity_weight = 0.3;            // s of the paper's eq. 6; only the paper's method looks at it
   std::size_t learning_lumitexels = 2000;   // that the materials are learnt on
   std::size_t final_lumitexels = 2000;      // of its own that each material is fitted to at the end
+  int draw = 0;                             // which lumitexels these are, of those that might be (draw_phase.h)
   LobeShapes lobe_shapes = LobeShapes::Shared;  // of a material's channels
   int bases = 0;                            // at most so many BRDFs that a material's texels mix; 0: no more than predict left-out samples better
   Precision precision = Precision::Double;  // of the bases' values at samples

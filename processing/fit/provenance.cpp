@@ -108,6 +108,7 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
                        {"layout", to_string(options.layout.choice)},
                        {"atlas_size", options.layout.size},
                        {"learning_lumitexels", options.learning_lumitexels},
+                       {"draw", options.draw},
                        {"final_lumitexels", options.final_lumitexels},
                        {"lobe_shapes", to_string(options.lobe_shapes)},
                        {"bases", options.bases == 0 ? json("auto") : json(options.bases)},

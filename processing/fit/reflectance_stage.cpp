@@ -22,6 +22,7 @@ ClusterOptions cluster_options(const FitOptions& options, const ErrorModel& erro
   cluster.errors = options.errors;
   cluster.materials = options.materials;
   cluster.final_lumitexels = options.final_lumitexels;
+  cluster.draw = options.draw;
   cluster.fit.family = options.family.value_or(BrdfFamily::Lafortune);
   cluster.any_family = !options.family;
   cluster.fit.most_lobes = options.most_lobes;
@@ -34,14 +35,14 @@ Clustering learn_materials(const Observations& observations, const FitOptions& o
                            const MaterialsBefore& before, Progress& progress) {
   const int wanted = options.materials > 0 ? options.materials : kMostMaterials;
   progress.begin("materials", wanted, "materials");
-  const auto selection = select_lumitexels(observations, options.learning_lumitexels);
+  const auto selection = select_lumitexels(observations, options.learning_lumitexels, options.draw);
   if (selection.empty()) {
     throw Error("fit: no surface point has " + std::to_string(kFewestSamples) +
                 " samples; more views or more light on the object are needed");
   }
   const auto report = [&](int found) { progress.update(std::min(found, wanted)); };
   if (options.method == FitMethod::Paper) {
-    const PaperOptions paper{options.materials, options.most_lobes, options.intensity_weight, options.final_lumitexels};
+    const PaperOptions paper{options.materials, options.most_lobes, options.intensity_weight, options.final_lumitexels, options.draw};
     return paper_clustering(observations, selection, paper, report);
   }
   return cluster_materials(observations, selection, cluster_options(options, error, before), report);

@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <utility>
 
 #include "drivers/error.h"
-#include "processing/fit/coarser_session.h"
-#include "processing/fit/fit_model.h"
 #include "processing/fit/thinned_session.h"
 #include "processing/fit/tradeoff_journal.h"
 
@@ -38,45 +35,6 @@ class SettingProgress final : public Progress {
   int stages_;
 };
 
-// Geometry, samples, materials, weights, comparison; bases and weights again; light between surfaces; normals and their trial, materials
-// and weights again.
-int stages_of(const FitOptions& options) {
-  int stages = options.principal_functions ? 7 : 5;
-  if (options.interreflections.wanted) stages += options.interreflections.rounds;
-  if (options.normals == NormalChoice::Auto) ++stages;
-  if (options.normals != NormalChoice::Mesh) stages += 3;
-  return stages;
-}
-
-double cpu_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-void take_costs(const std::vector<StageCost>& stages, bool own_memory, TradeoffMeasurement& measurement) {
-  std::int64_t peak_bytes = 0;
-  for (const StageCost& stage : stages) {
-    measurement.seconds += stage.seconds;
-    peak_bytes = std::max(peak_bytes, stage.peak_bytes);
-  }
-  if (own_memory) measurement.peak_bytes = peak_bytes;
-}
-
-void take_errors(const Evaluation& evaluation, TradeoffMeasurement& measurement) {
-  std::vector<double> relative, square_root;
-  for (const ViewEvaluation& view : evaluation.views) {
-    if (!view.heldout) continue;
-    relative.push_back(view.error.relative_rms);
-    measurement.clipped_by_view.push_back(view.error.clipped_rms);
-    square_root.push_back(view.error.sqrt_rms);
-  }
-  const ImageError& pooled = *evaluation.heldout[static_cast<std::size_t>(evaluation.last_stage)];
-  measurement.relative = {pooled.relative_rms, mean_with_spread(relative).sigma};
-  measurement.clipped = {pooled.clipped_rms, mean_with_spread(measurement.clipped_by_view).sigma};
-  measurement.square_root = {pooled.sqrt_rms, mean_with_spread(square_root).sigma};
-}
-
 // Only held-out photographs: those of the fit would differ between settings with more and with fewer views.
 CalibratedSession heldout_part(const CalibratedSession& session) {
   CalibratedSession part = session;
@@ -84,33 +42,15 @@ CalibratedSession heldout_part(const CalibratedSession& session) {
   return part;
 }
 
-TradeoffMeasurement measured(const CalibratedSession& session, const CalibratedSession& heldout, const TradeoffSetting& setting,
-                             Progress& progress) {
-  TradeoffMeasurement measurement;
-  measurement.setting = setting;
-  const std::size_t views = setting.fit_views == 0 ? fit_views(session) : setting.fit_views;
-  if (views > fit_views(session)) {
-    measurement.failure = "the session has " + std::to_string(fit_views(session)) + " photographs to fit";
-    return measurement;
-  }
-  measurement.fit_views = views;
-  try {
-    const CoarserSession coarser(with_fit_views(session, views), setting.pixel_block);
-    const bool own_memory = restart_peak_memory();
-    const double cpu_before = cpu_seconds();
-    const FittedModel fitted = fit_model(coarser.session(), setting.options, {}, progress);
-    measurement.cpu_seconds = cpu_seconds() - cpu_before;
-    measurement.materials = fitted.model.materials.size();
-    take_costs(fitted.summary.stages, own_memory, measurement);
-    take_errors(evaluate_model(fitted.model, heldout, progress), measurement);
-  } catch (const BadInput&) {
-    throw;
-  } catch (const Corrupt&) {
-    throw;  // the session's files, not this setting
-  } catch (const Error& error) {
-    measurement.failure = error.what();
-  }
-  return measurement;
+TradeoffSetting with_draw(TradeoffSetting setting, int draw) {
+  setting.options.draw = draw;
+  return setting;
+}
+
+std::vector<HeldoutError> errors_of(const std::vector<TradeoffRun>& runs, HeldoutError TradeoffRun::*error) {
+  std::vector<HeldoutError> errors;
+  for (const TradeoffRun& run : runs) errors.push_back(run.*error);
+  return errors;
 }
 
 bool comparable(const TradeoffMeasurement& m) { return m.measured() && std::isfinite(m.clipped.value); }
@@ -122,37 +62,56 @@ bool dominates(const TradeoffMeasurement& a, const TradeoffMeasurement& b) {
 
 }  // namespace
 
-ErrorWithSpread mean_with_spread(const std::vector<double>& values) {
-  if (values.empty()) return {};
-  const auto count = static_cast<double>(values.size());
-  double mean = 0.0, squares = 0.0;
-  for (const double value : values) mean += value / count;
-  for (const double value : values) squares += (value - mean) * (value - mean);
-  ErrorWithSpread result;
-  result.value = mean;
-  if (values.size() > 1) result.sigma = std::sqrt(squares / (count - 1.0) / count);
-  return result;
+TradeoffMeasurement summed_up(const TradeoffSetting& setting, const std::vector<TradeoffRun>& runs) {
+  TradeoffMeasurement measurement;
+  measurement.setting = setting;
+  for (const TradeoffRun& run : runs) {
+    if (run.measured()) continue;
+    measurement.failure = run.failure;
+    measurement.runs = {run};
+    return measurement;
+  }
+  measurement.runs = runs;
+  for (const TradeoffRun& run : runs) {
+    measurement.cpu_seconds += run.cpu_seconds / static_cast<double>(runs.size());
+    measurement.seconds += run.seconds / static_cast<double>(runs.size());
+    if (run.peak_bytes) measurement.peak_bytes = std::max(measurement.peak_bytes.value_or(0), *run.peak_bytes);
+  }
+  measurement.relative = over_draws(errors_of(runs, &TradeoffRun::relative));
+  measurement.clipped = over_draws(errors_of(runs, &TradeoffRun::clipped));
+  measurement.square_root = over_draws(errors_of(runs, &TradeoffRun::square_root));
+  return measurement;
 }
 
-Tradeoff measure_tradeoff(const CalibratedSession& session, const std::vector<TradeoffSetting>& settings, TradeoffJournal* journal, Progress& progress) {
+Tradeoff measure_tradeoff(const CalibratedSession& session, const std::vector<TradeoffSetting>& settings, int draws, TradeoffJournal* journal,
+                          Progress& progress) {
   Tradeoff tradeoff;
   tradeoff.session_key = session.key;
   tradeoff.fit_views = fit_views(session);
   tradeoff.heldout_views = heldout_views(session);
+  tradeoff.draws = draws;
   if (tradeoff.heldout_views == 0) {
     throw BadInput("session", "no photograph is held out of the fit, so nothing can judge a model",
                    "some views with split = \"heldout\" in the capture plan, or heldout in column split of lights.csv before importing");
   }
   const CalibratedSession heldout = heldout_part(session);
   progress.begin("fits and comparisons", kWhole_percent, "%");
-  for (const TradeoffSetting& setting : settings) {
-    const std::size_t before = tradeoff.measurements.size();
-    const std::optional<TradeoffMeasurement> known = journal != nullptr ? journal->known(setting) : std::nullopt;
-    SettingProgress part(progress, before, settings.size(), stages_of(setting.options));
-    tradeoff.measurements.push_back(known ? *known : measured(session, heldout, setting, part));
-    if (journal != nullptr && !known) journal->keep(tradeoff.measurements.back());
-    progress.update(kWhole_percent * static_cast<std::int64_t>(before + 1) / static_cast<std::int64_t>(settings.size()));
+  const std::size_t all = settings.size() * static_cast<std::size_t>(draws);
+  std::vector<std::vector<TradeoffRun>> runs(settings.size());
+  // Draw after draw, so that whoever stops early and goes on with fewer draws has all settings.
+  for (std::size_t done = 0; done < all; ++done) {
+    const std::size_t k = done % settings.size();
+    const TradeoffSetting setting = with_draw(settings[k], static_cast<int>(done / settings.size()));
+    std::optional<TradeoffRun> run = journal != nullptr ? journal->known(setting) : std::nullopt;
+    if (!run) {
+      SettingProgress part(progress, done, all, stages_of(setting.options));
+      run = run_setting(session, heldout, setting, part);
+      if (journal != nullptr) journal->keep(setting, *run);
+    }
+    runs[k].push_back(*run);
+    progress.update(kWhole_percent * static_cast<std::int64_t>(done + 1) / static_cast<std::int64_t>(all));
   }
+  for (std::size_t k = 0; k < settings.size(); ++k) tradeoff.measurements.push_back(summed_up(settings[k], runs[k]));
   return tradeoff;
 }
 
@@ -172,15 +131,20 @@ std::optional<TradeoffGain> gain_over_standard(const Tradeoff& tradeoff, const T
     return m.setting.name == kStandardSetting;
   });
   if (standard == tradeoff.measurements.end() || !comparable(*standard) || !comparable(measurement)) return std::nullopt;
-  std::vector<double> differences;
-  for (std::size_t v = 0; v < standard->clipped_by_view.size(); ++v) {
-    differences.push_back(standard->clipped_by_view[v] - measurement.clipped_by_view.at(v));
-  }
+  std::vector<HeldoutError> gains;
+  for (std::size_t k = 0; k < standard->runs.size(); ++k) gains.push_back(difference(standard->runs[k].clipped, measurement.runs.at(k).clipped));
   TradeoffGain gain;
-  gain.gain = {standard->clipped.value - measurement.clipped.value, mean_with_spread(differences).sigma};
+  gain.gain = over_draws(gains);
   gain.more_cpu_seconds = measurement.cpu_seconds - standard->cpu_seconds;
   if (std::abs(gain.more_cpu_seconds) > kSameTime * standard->cpu_seconds) gain.per_second = gain.gain.value / gain.more_cpu_seconds;
   return gain;
+}
+
+std::string materials_found(const TradeoffMeasurement& measurement) {
+  const auto [least, most] = std::minmax_element(measurement.runs.begin(), measurement.runs.end(),
+                                                 [](const auto& a, const auto& b) { return a.materials < b.materials; });
+  const std::string fewest = std::to_string(least->materials);
+  return least->materials == most->materials ? fewest : fewest + "-" + std::to_string(most->materials);
 }
 
 }  // namespace lumitexel

@@ -35,26 +35,23 @@ TradeoffJournal::TradeoffJournal(std::filesystem::path file, std::string key) : 
 
 void TradeoffJournal::write() const { write_whole_file(file_, Json{{kEntries, entries_}}.dump(1) + "\n"); }
 
-std::optional<TradeoffMeasurement> TradeoffJournal::known(const TradeoffSetting& setting) const {
+std::optional<TradeoffRun> TradeoffJournal::known(const TradeoffSetting& setting) const {
   const Json wanted = entry_of(key_, setting);
   for (const Json& entry : entries_) {
     if (entry.at("of") != wanted.at("of") || entry.at("setting") != wanted.at("setting")) continue;
-    TradeoffMeasurement measurement;
-    measurement.setting = setting;
     try {
-      measurement_from(entry.at("measured"), measurement);
+      return run_from(entry.at("measured"));
     } catch (const Json::exception& error) {
       throw BadInput(file_.string(), error.what(), "measurements as tradeoff --keep writes them, or the name of a new file");
     }
-    return measurement;
   }
   return std::nullopt;
 }
 
-void TradeoffJournal::keep(const TradeoffMeasurement& measurement) {
-  if (!measurement.measured()) return;
-  Json entry = entry_of(key_, measurement.setting);
-  entry["measured"] = measurement_json(measurement);
+void TradeoffJournal::keep(const TradeoffSetting& setting, const TradeoffRun& run) {
+  if (!run.measured()) return;
+  Json entry = entry_of(key_, setting);
+  entry["measured"] = run_json(run);
   entries_.push_back(std::move(entry));
   write();
 }

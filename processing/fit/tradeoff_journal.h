@@ -1,4 +1,4 @@
-// Measurements of a tradeoff kept in a file as they come, so that a run that was stopped goes on where it was.
+// Fits of a tradeoff kept in a file as they come, so that a run that was stopped goes on where it was.
 #pragma once
 
 #include <filesystem>
@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "processing/fit/tradeoff.h"
+#include "processing/fit/tradeoff_run.h"
 
 namespace lumitexel {
 
@@ -16,8 +16,8 @@ class TradeoffJournal {
   // not there becomes an empty journal. Throws BadInput if it holds something else, Error where it cannot be written. One run at a time.
   TradeoffJournal(std::filesystem::path file, std::string key);
 
-  std::optional<TradeoffMeasurement> known(const TradeoffSetting& setting) const;
-  void keep(const TradeoffMeasurement& measurement);  // measured ones only; throws Error where the file cannot be written
+  std::optional<TradeoffRun> known(const TradeoffSetting& setting) const;
+  void keep(const TradeoffSetting& setting, const TradeoffRun& run);  // measured ones only; throws Error where the file cannot be written
 
  private:
   std::filesystem::path file_;

@@ -12,11 +12,41 @@ namespace {
 
 Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json to_json(const ErrorWithSpread& error) { return {{"value", finite_or_null(error.value)}, {"sigma", finite_or_null(error.sigma)}}; }
-
 double number_or_nan(const Json& json) { return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>(); }
 
-ErrorWithSpread error_from(const Json& json) { return {number_or_nan(json.at("value")), number_or_nan(json.at("sigma"))}; }
+Json to_json(const ErrorWithSpread& error) {
+  return {{"value", finite_or_null(error.value)}, {"sigma", finite_or_null(error.sigma)}, {"draw_deviation", finite_or_null(error.draw_deviation)}};
+}
+
+Json to_json(const HeldoutError& error) {
+  Json views = Json::array();
+  for (const double of_view : error.by_view) views.push_back(finite_or_null(of_view));
+  return {{"pooled", finite_or_null(error.pooled)}, {"by_view", views}};
+}
+
+HeldoutError error_from(const Json& json) {
+  HeldoutError error{number_or_nan(json.at("pooled")), {}};
+  for (const Json& of_view : json.at("by_view")) error.by_view.push_back(number_or_nan(of_view));
+  return error;
+}
+
+Json bytes_json(const std::optional<std::int64_t>& bytes) { return bytes ? Json(*bytes) : Json(nullptr); }
+
+// All draws together, then each.
+Json measurement_json(const TradeoffMeasurement& measurement) {
+  Json draws = Json::array();
+  for (const TradeoffRun& run : measurement.runs) draws.push_back(run_json(run));
+  return {{"materials", materials_found(measurement)},
+          {"fit_views", measurement.runs.front().fit_views},
+          {"seconds", measurement.seconds},
+          {"cpu_seconds", measurement.cpu_seconds},
+          {"peak_bytes", bytes_json(measurement.peak_bytes)},
+          {"heldout",
+           {{"relative_rms", to_json(measurement.relative)},
+            {"clipped_rms", to_json(measurement.clipped)},
+            {"sqrt_rms", to_json(measurement.square_root)}}},
+          {"draws", draws}};
+}
 
 Json gain_json(const std::optional<TradeoffGain>& gain) {
   if (!gain) return nullptr;
@@ -48,35 +78,31 @@ Json setting_json(const TradeoffSetting& setting) {
           {"relative_error", options.relative_error},
           {"error_floor_share", options.error_floor_share},
           {"learning_lumitexels", options.learning_lumitexels},
+          {"draw", options.draw},
           {"final_lumitexels", options.final_lumitexels}};
 }
 
-Json measurement_json(const TradeoffMeasurement& measurement) {
-  Json views = Json::array();
-  for (const double error : measurement.clipped_by_view) views.push_back(finite_or_null(error));
-  return {{"materials", measurement.materials},
-          {"fit_views", measurement.fit_views},
-          {"seconds", measurement.seconds},
-          {"cpu_seconds", measurement.cpu_seconds},
-          {"peak_bytes", measurement.peak_bytes ? Json(*measurement.peak_bytes) : Json(nullptr)},
-          {"heldout",
-           {{"relative_rms", to_json(measurement.relative)},
-            {"clipped_rms", to_json(measurement.clipped)},
-            {"sqrt_rms", to_json(measurement.square_root)},
-            {"clipped_rms_by_view", views}}}};
+Json run_json(const TradeoffRun& run) {
+  return {{"materials", run.materials},
+          {"fit_views", run.fit_views},
+          {"seconds", run.seconds},
+          {"cpu_seconds", run.cpu_seconds},
+          {"peak_bytes", bytes_json(run.peak_bytes)},
+          {"heldout", {{"relative_rms", to_json(run.relative)}, {"clipped_rms", to_json(run.clipped)}, {"sqrt_rms", to_json(run.square_root)}}}};
 }
 
-void measurement_from(const Json& json, TradeoffMeasurement& measurement) {
-  measurement.materials = json.at("materials").get<std::size_t>();
-  measurement.fit_views = json.at("fit_views").get<std::size_t>();
-  measurement.seconds = json.at("seconds").get<double>();
-  measurement.cpu_seconds = json.at("cpu_seconds").get<double>();
-  if (!json.at("peak_bytes").is_null()) measurement.peak_bytes = json.at("peak_bytes").get<std::int64_t>();
+TradeoffRun run_from(const Json& json) {
+  TradeoffRun run;
+  run.materials = json.at("materials").get<std::size_t>();
+  run.fit_views = json.at("fit_views").get<std::size_t>();
+  run.seconds = json.at("seconds").get<double>();
+  run.cpu_seconds = json.at("cpu_seconds").get<double>();
+  if (!json.at("peak_bytes").is_null()) run.peak_bytes = json.at("peak_bytes").get<std::int64_t>();
   const Json& heldout = json.at("heldout");
-  measurement.relative = error_from(heldout.at("relative_rms"));
-  measurement.clipped = error_from(heldout.at("clipped_rms"));
-  measurement.square_root = error_from(heldout.at("sqrt_rms"));
-  for (const Json& error : heldout.at("clipped_rms_by_view")) measurement.clipped_by_view.push_back(number_or_nan(error));
+  run.relative = error_from(heldout.at("relative_rms"));
+  run.clipped = error_from(heldout.at("clipped_rms"));
+  run.square_root = error_from(heldout.at("sqrt_rms"));
+  return run;
 }
 
 std::string tradeoff_json(const Tradeoff& tradeoff) {
@@ -94,6 +120,7 @@ std::string tradeoff_json(const Tradeoff& tradeoff) {
   const Json document = {{"session_key", tradeoff.session_key},
                          {"fit_views", tradeoff.fit_views},
                          {"heldout_views", tradeoff.heldout_views},
+                         {"draws", tradeoff.draws},
                          {"settings", settings}};
   return document.dump(2);
 }

@@ -11,7 +11,7 @@ namespace lumitexel {
 // sought) only another program would change.
 nlohmann::ordered_json setting_json(const TradeoffSetting& setting);
 
-nlohmann::ordered_json measurement_json(const TradeoffMeasurement& measurement);  // figures that do not exist are null
-void measurement_from(const nlohmann::ordered_json& json, TradeoffMeasurement& measurement);  // all but setting and failure; throws nlohmann's errors
+nlohmann::ordered_json run_json(const TradeoffRun& run);  // of a run that was measured; figures that do not exist are null
+TradeoffRun run_from(const nlohmann::ordered_json& json);  // throws nlohmann's errors
 
 }  // namespace lumitexel

@@ -36,6 +36,7 @@ std::string header(const std::string& session_name, const Tradeoff& tradeoff) {
     text += tile(fastest->setting.name, "fastest: " + html::number(fastest->cpu_seconds) + " s of CPU time, error " + html::number(fastest->clipped.value));
     text += tile(best->setting.name, "most accurate: error " + html::number(best->clipped.value) + ", " + html::number(best->cpu_seconds) + " s of CPU time");
   }
+  text += tile(std::to_string(tradeoff.draws), "fits of each setting");
   text += tile(std::to_string(tradeoff.fit_views), "photographs to fit");
   text += tile(std::to_string(tradeoff.heldout_views), "photographs kept out, which judge");
   return text + "</div></header>\n";
@@ -47,8 +48,8 @@ std::string plot_section(const Tradeoff& tradeoff) {
   return html::section(
       "Error against CPU time",
       "Lower is better, further left is faster. The steps are the Pareto front: the best error that can be had within that time.",
-      html::figure(plot, "Orange: on the front. Blue: another setting is both faster and better. Bars: one standard error over the held-out "
-                         "photographs; they move together from setting to setting, so differences are surer than the bars say (next table)."));
+      html::figure(plot, "Orange: on the front. Blue: another setting is both faster and better. Bars: one standard error, over held-out "
+                         "photographs and draws; settings move together, so differences are surer than the bars say (next table but one)."));
 }
 
 std::string error_section(const Tradeoff& tradeoff) {
@@ -61,14 +62,16 @@ std::string error_section(const Tradeoff& tradeoff) {
       failures += "<li>" + html::escaped(m.setting.name + ": " + m.failure) + "</li>";
       continue;
     }
-    rows.push_back({m.setting.name, front[i] ? "front" : "", with_spread(m.clipped), with_spread(m.relative), with_spread(m.square_root),
-                    html::number(m.cpu_seconds), html::number(m.seconds), memory(m.peak_bytes), std::to_string(m.materials), std::to_string(m.fit_views)});
+    rows.push_back({m.setting.name, front[i] ? "front" : "", with_spread(m.clipped), html::number(m.clipped.draw_deviation), with_spread(m.relative), with_spread(m.square_root),
+                    html::number(m.cpu_seconds), html::number(m.seconds), memory(m.peak_bytes), materials_found(m), std::to_string(m.runs.front().fit_views)});
   }
-  std::string body = html::table({"setting", "", "clipped error", "relative", "square roots", "CPU seconds", "seconds", "peak MB", "materials", "views"}, rows);
+  std::string body = html::table({"setting", "", "clipped error", "one draw", "relative", "square roots", "CPU seconds", "seconds", "peak MB", "materials", "views"}, rows);
   if (!failures.empty()) body += "<h3>Not measured</h3><ul>" + failures + "</ul>";
   return html::section("Each setting",
                        "RMS of rendering minus photograph over that of the photograph, over all held-out pixels; clipped: both at the photograph's "
-                       "99.9th percentile; square roots: of their roots. ±: one standard error over the held-out photographs.",
+                       "99.9th percentile; square roots: of their roots. ±: one standard error, over the held-out photographs and over draws of the "
+                       "surface points that materials are learnt on. One draw: how far a single fit strays (standard deviation); an en dash where "
+                       "there was but one.",
                        body);
 }
 
@@ -82,7 +85,7 @@ std::string gain_section(const Tradeoff& tradeoff) {
   if (rows.empty()) return "";
   return html::section("Against the standard preset",
                        "Gain: standard's clipped error less this setting's; above 0, this setting is better. ± is the standard error of the "
-                       "differences on the same photographs: a gain within twice that may be chance. Per CPU second: of a slower setting, what each "
+                       "differences on the same photographs and draws: a gain within twice that may be chance. Per CPU second: of a slower setting, what each "
                        "second more buys; of a faster one, what each second saved costs; below 0, one of the two is both faster and better. An en "
                        "dash where the times differ by less than 5 %, as runs of one setting do.",
                        html::table({"setting", "gain", "more CPU seconds", "gain per CPU second"}, rows));
@@ -92,8 +95,8 @@ std::string meaning_section(const Tradeoff& tradeoff) {
   std::vector<std::vector<std::string>> rows;
   for (const TradeoffMeasurement& m : tradeoff.measurements) rows.push_back({m.setting.name, m.setting.what});
   return html::section("What the settings are",
-                       "All but the presets are the standard preset with something changed. CPU seconds are of all threads, of the fit alone, one run each; "
-                       "seconds are its wall time, on this machine as busy as it was. Calibration and comparison are not counted. Peak memory is "
+                       "All but the presets are the standard preset with something changed. CPU seconds are of all threads, of the fit alone, the mean of its "
+                       "draws; seconds are its wall time, on this machine as busy as it was. Calibration and comparison are not counted. Peak memory is "
                        "the process's during that fit.",
                        html::table({"setting", "meaning"}, rows));
 }

@@ -20,6 +20,8 @@ struct FitSettings {
   std::string session, out, quality = "standard", method = "lumitexel", errors = "auto", bases = "auto", precision = "double";
   std::string materials, family, lobe_shapes, normals, interreflections;  // empty: as quality and method have it
   std::optional<int> lobes;
+  std::optional<std::size_t> learning_points, final_points;
+  int draw = 0;
   std::optional<double> intensity_weight;
   bool plain_projection = false, principal_functions = false;
   std::string layout = "auto";
@@ -78,6 +80,9 @@ FitOptions fit_options(const FitSettings& settings) {
   if (!settings.interreflections.empty()) {
     options.interreflections.wanted = named_value<bool>("--interreflections", settings.interreflections, {{"auto", true}, {"off", false}});
   }
+  if (settings.learning_points) options.learning_lumitexels = *settings.learning_points;
+  if (settings.final_points) options.final_lumitexels = *settings.final_points;
+  options.draw = settings.draw;
   options.errors = named_value("--errors", settings.errors, error_words());
   options.layout = {named_value("--layout", settings.layout, layout_words()), settings.atlas_size};
   if (settings.atlas_size > 0 && options.layout.choice != LayoutChoice::Mesh) {
@@ -291,6 +296,15 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
   command->add_option("--lobes", settings->lobes, "Most lobes of a material; each must be asked for by its samples (default: 2, with --quality reference 3, with --method paper 1, "
                       "which asks nothing)")
       ->check(CLI::Range(0, 3));
+  command->add_option("--learning-points", settings->learning_points,
+                      "Surface points that the materials are learnt on (default: 2000, with --quality reference 50000)")
+      ->check(CLI::Range(100, 10'000'000));
+  command->add_option("--final-points", settings->final_points,
+                      "Points of its own that each material is fitted to at the end (default: 2000, with --quality reference all)")
+      ->check(CLI::Range(100, 10'000'000));
+  command->add_option("--draw", settings->draw,
+                      "Which points the materials are learnt on and fitted to: 0, 1, 2, ...; what differs between draws is chance (see tradeoff --draws)")
+      ->check(CLI::Range(0, 1'000'000));
   command->add_option("--normals", settings->normals,
                       "fitted: normals finer than the mesh's, from all photographs, and then everything once more on them; texel: the same, each texel by "
                       "its own samples alone, as in the paper; mesh: the mesh's own; auto: fitted where photographs left out for it are then predicted better (default: auto, with "

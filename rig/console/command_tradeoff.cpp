@@ -25,6 +25,7 @@ namespace fs = std::filesystem;
 struct TradeoffArguments {
   std::string session, page, keep, materials;
   bool full = false;
+  int draws = 1;
   std::vector<std::string> only;
 };
 
@@ -36,8 +37,9 @@ std::string formatted(const char* format, Values... values) {
 }
 
 std::string error_cell(const ErrorWithSpread& error) {
-  if (!std::isfinite(error.sigma)) return formatted("%7.4f          ", error.value);
-  return formatted("%7.4f +- %.4f", error.value, error.sigma);
+  const std::string sigma = std::isfinite(error.sigma) ? formatted("+- %.4f", error.sigma) : formatted("%9s", "");
+  const std::string draws = std::isfinite(error.draw_deviation) ? formatted("%.4f", error.draw_deviation) : formatted("%6s", "-");
+  return formatted("%7.4f %s %s", error.value, sigma.c_str(), draws.c_str());
 }
 
 std::string memory_cell(const std::optional<std::int64_t>& bytes) {
@@ -55,20 +57,23 @@ std::string measurement_line(const Tradeoff& tradeoff, const TradeoffMeasurement
   const std::string name = formatted("%c %-19s", front ? '*' : ' ', m.setting.name.c_str());
   if (!m.measured()) return name + "not measured: " + m.failure + "\n";
   const auto gain = m.setting.name == kStandardSetting ? std::nullopt : gain_over_standard(tradeoff, m);
-  return name + formatted("%5zu %4zu  %s  %7.4f %7.4f  %8.1f %7.1f %s", m.fit_views, m.materials, error_cell(m.clipped).c_str(), m.relative.value,
+  return name + formatted("%5zu %5s  %s  %7.4f %7.4f  %8.1f %7.1f %s", m.runs.front().fit_views, materials_found(m).c_str(), error_cell(m.clipped).c_str(), m.relative.value,
                           m.square_root.value, m.cpu_seconds, m.seconds, memory_cell(m.peak_bytes).c_str()) +
          gain_cells(gain) + "\n";
 }
 
 std::string tradeoff_text(const Tradeoff& tradeoff) {
-  std::string text = formatted("Errors on %zu photographs that no fit saw; %zu more for fitting\n", tradeoff.heldout_views, tradeoff.fit_views);
-  text += "                                 clipped error                           CPU                     gain over             gain\n"
-          "  setting            views mat.   +- over views    relative    sqrt   seconds seconds peak MB  standard         per CPU s\n";
+  std::string text = formatted("Errors on %zu photographs that no fit saw; %zu more for fitting; each setting fitted %d time%s\n", tradeoff.heldout_views,
+                               tradeoff.fit_views, tradeoff.draws, tradeoff.draws == 1 ? "" : "s");
+  text += "                                  clipped error     one                        CPU                   gain over             gain\n"
+          "  setting            views  mat.                    draw   relative    sqrt   seconds seconds peak MB  standard         per CPU s\n";
   const std::vector<bool> front = pareto_front(tradeoff.measurements);
   for (std::size_t i = 0; i < front.size(); ++i) text += measurement_line(tradeoff, tradeoff.measurements[i], front[i]);
   return text +
+         "+-: standard error, over the photographs kept out and over draws of the surface points that materials are learnt on. One draw: how far\n"
+         "a single fit's figure strays, 1 sigma" + std::string(tradeoff.draws > 1 ? ".\n" : "; not known from one draw: small differences may be chance, and --draws 4 tells.\n") +
          "* on the Pareto front: no setting is both faster and better by the clipped error. Gain: clipped error of standard less\n"
-         "this one's, +- over the same views. Per CPU second: of a slower setting what a second more buys, of a faster one what a\n"
+         "this one's, +- over the same views and draws. Per CPU second: of a slower setting what a second more buys, of a faster one what a\n"
          "second saved costs; below 0 one of the two is faster and better; - where times are within 5 %.\n"
          "CPU seconds: of all threads. Seconds: wall time, which other programs on this machine make longer.\n";
 }
@@ -115,7 +120,7 @@ CommandResult tradeoff_command(const TradeoffArguments& arguments, CommandContex
   const CalibratedSession session = calibrate_session(store, context.progress);
   std::optional<TradeoffJournal> journal;
   if (!arguments.keep.empty()) journal.emplace(arguments.keep, session.key + " by " + program_and_machine());
-  const Tradeoff tradeoff = measure_tradeoff(session, settings, journal ? &*journal : nullptr, context.progress);
+  const Tradeoff tradeoff = measure_tradeoff(session, settings, arguments.draws, journal ? &*journal : nullptr, context.progress);
   const std::string json = tradeoff_json(tradeoff);
   CommandResult result;
   result.json = nlohmann::json::parse(json);
@@ -139,7 +144,10 @@ void add_tradeoff_command(CLI::App& app, CommandAction& action) {
   command->add_flag("--reference,--full", arguments->full, "Also the reference preset, the most thorough");
   command->add_option("--only", arguments->only, "These settings only: " + setting_names())->delimiter(',')->type_name("NAME");
   command->footer(meanings(tradeoff_settings({}, true, {})));
-  command->add_option("--keep", arguments->keep, "File of measurements, added to as they come; those it has of this session, setting, program and machine are not made again");
+  command->add_option("--draws", arguments->draws, "Fits of each setting, each to materials learnt on other surface points: tells what of a difference is chance")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  command->add_option("--keep", arguments->keep, "File of fits, added to as they come; those it has of this session, setting, draw, program and machine are not made again");
   command->add_option("--page", arguments->page, "HTML file to write, with a drawing of error against CPU seconds");
   command->callback([arguments, &action] {
     action = [arguments](CommandContext& context) { return tradeoff_command(*arguments, context); };

@@ -5,6 +5,7 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
+#include <iterator>
 #include <cmath>
 
 #include "processing/brdf/misfit.h"
@@ -157,6 +158,25 @@ TEST(SelectLumitexels, PrefersThoseNearAMirrorReflection) {
   const std::size_t all = scene.observations.lumitexels();
   for (std::size_t i = 0; i < all; ++i) mean += mirror_nearness(scene.observations.of(i)) / static_cast<double>(all);
   EXPECT_GT(chosen_mean, mean);
+}
+
+TEST(SelectLumitexels, OtherDrawsAreOthersAsManyAndNearAsOften) {
+  const ThreeMaterials scene(8);
+  const auto nearness = [&](const std::vector<std::size_t>& chosen) {
+    double sum = 0;
+    for (const std::size_t i : chosen) sum += mirror_nearness(scene.observations.of(i));
+    return sum / static_cast<double>(chosen.size());
+  };
+  const auto first = select_lumitexels(scene.observations, 200);
+  EXPECT_EQ(select_lumitexels(scene.observations, 200, 0), first);
+  for (const int draw : {1, 2, 3}) {
+    const auto other = select_lumitexels(scene.observations, 200, draw);
+    std::vector<std::size_t> both;
+    std::set_intersection(first.begin(), first.end(), other.begin(), other.end(), std::back_inserter(both));
+    EXPECT_LT(both.size(), first.size() / 2) << draw;
+    EXPECT_NEAR(static_cast<double>(other.size()), static_cast<double>(first.size()), 20.0) << draw;  // points chosen for both reasons count once
+    EXPECT_NEAR(nearness(other), nearness(first), 0.02) << draw;
+  }
 }
 
 }  // namespace

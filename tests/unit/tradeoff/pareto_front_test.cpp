@@ -56,13 +56,5 @@ TEST(TradeoffGain, DoesNotExistWithoutStandardOrForAFailure) {
   EXPECT_FALSE(gain_over_standard(tradeoff, tradeoff.measurements[0]).has_value());
 }
 
-TEST(MeanWithSpread, IsTheStandardErrorOfTheMean) {
-  const ErrorWithSpread spread = mean_with_spread({1, 2, 3, 4});
-  EXPECT_NEAR(spread.value, 2.5, kRounding);
-  EXPECT_NEAR(spread.sigma, std::sqrt(5.0 / 3.0 / 4.0), kRounding);
-  EXPECT_TRUE(std::isnan(mean_with_spread({1}).sigma));
-  EXPECT_TRUE(std::isnan(mean_with_spread({}).value));
-}
-
 }  // namespace
 }  // namespace lumitexel

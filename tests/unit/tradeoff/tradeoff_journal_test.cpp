@@ -13,41 +13,42 @@
 namespace lumitexel {
 namespace {
 
-TradeoffMeasurement of_setting(const TradeoffSetting& setting, double cpu_seconds) {
-  TradeoffMeasurement measurement = made_measurement("", cpu_seconds, {0.1, 0.30000000000000004});
-  measurement.setting = setting;
-  measurement.materials = 3;
-  measurement.fit_views = 12;
-  measurement.relative.sigma = std::nan("");
-  return measurement;
+TradeoffRun some_run(double cpu_seconds) {
+  TradeoffRun run = made_run(cpu_seconds, {0.1, 0.30000000000000004});
+  run.materials = 3;
+  run.fit_views = 12;
+  run.relative.by_view[1] = std::nan("");
+  return run;
 }
 
 TEST(TradeoffJournal, GivesBackWhatItWasGivenToTheLastBit) {
   const TemporaryFolder folder;
   const auto settings = tradeoff_settings(4, false, {"draft", "lobes-1"});
-  const TradeoffMeasurement first = of_setting(settings[0], 10.1), second = of_setting(settings[1], 1.0 / 3.0);
+  const TradeoffRun first = some_run(10.1), second = some_run(1.0 / 3.0);
   {
     TradeoffJournal journal(folder.path() / "kept.json", "session and program");
     EXPECT_FALSE(journal.known(settings[0]).has_value());
-    journal.keep(first);
-    journal.keep(second);
+    journal.keep(settings[0], first);
+    journal.keep(settings[1], second);
   }
   const TradeoffJournal journal(folder.path() / "kept.json", "session and program");
   const auto known = journal.known(settings[1]);
   ASSERT_TRUE(known.has_value());
-  EXPECT_EQ(measurement_json(*known), measurement_json(second));
-  EXPECT_EQ(known->setting.name, "lobes-1");
-  EXPECT_TRUE(std::isnan(known->relative.sigma));
-  EXPECT_EQ(measurement_json(*journal.known(settings[0])), measurement_json(first));
+  EXPECT_EQ(run_json(*known), run_json(second));
+  EXPECT_TRUE(std::isnan(known->relative.by_view[1]));
+  EXPECT_EQ(run_json(*journal.known(settings[0])), run_json(first));
 }
 
-TEST(TradeoffJournal, KnowsNothingOfAnotherSessionProgramOrSetting) {
+TEST(TradeoffJournal, KnowsNothingOfAnotherSessionProgramSettingOrDraw) {
   const TemporaryFolder folder;
   TradeoffSetting setting = tradeoff_settings(4, false, {"draft"}).front();
   TradeoffJournal journal(folder.path() / "kept.json", "a");
-  journal.keep(of_setting(setting, 1.0));
+  journal.keep(setting, some_run(1.0));
   EXPECT_TRUE(journal.known(setting).has_value());
   EXPECT_FALSE(TradeoffJournal(folder.path() / "kept.json", "b").known(setting).has_value());
+  setting.options.draw = 1;
+  EXPECT_FALSE(journal.known(setting).has_value());
+  setting.options.draw = 0;
   setting.options.materials = 5;
   EXPECT_FALSE(journal.known(setting).has_value());
   setting.options.materials = 4;
@@ -57,11 +58,12 @@ TEST(TradeoffJournal, KnowsNothingOfAnotherSessionProgramOrSetting) {
 
 TEST(TradeoffJournal, DoesNotKeepFailures) {
   const TemporaryFolder folder;
-  TradeoffMeasurement failed = of_setting(tradeoff_settings(4, false, {"draft"}).front(), 1.0);
+  TradeoffRun failed = some_run(1.0);
   failed.failure = "no light";
+  const TradeoffSetting setting = tradeoff_settings(4, false, {"draft"}).front();
   TradeoffJournal journal(folder.path() / "kept.json", "a");
-  journal.keep(failed);
-  EXPECT_FALSE(journal.known(failed.setting).has_value());
+  journal.keep(setting, failed);
+  EXPECT_FALSE(journal.known(setting).has_value());
 }
 
 TEST(TradeoffJournal, RefusesAFileOfAnotherKind) {

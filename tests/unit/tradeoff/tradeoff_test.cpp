@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "processing/fit/tradeoff_journal.h"
 #include "tests/unit/bad_input_matcher.h"
 #include "tests/unit/sphere_session.h"
 
@@ -47,23 +48,23 @@ TEST(Tradeoff, MeasuresEachSettingAndSaysWhyNotWhereItCannot) {
   settings.push_back(settings.front());
   settings.back().fit_views = 3;
   RecordedProgress progress;
-  const Tradeoff tradeoff = measure_tradeoff(small_session(folder), settings, nullptr, progress);
+  const Tradeoff tradeoff = measure_tradeoff(small_session(folder), settings, 1, nullptr, progress);
 
   EXPECT_EQ(tradeoff.fit_views, 4u);
   EXPECT_EQ(tradeoff.heldout_views, 2u);
   ASSERT_EQ(tradeoff.measurements.size(), 3u);
   const TradeoffMeasurement& draft = tradeoff.measurements[0];
   ASSERT_TRUE(draft.measured()) << draft.failure;
-  EXPECT_EQ(draft.fit_views, 4u);
-  EXPECT_EQ(draft.materials, 1u);
+  EXPECT_EQ(draft.runs.front().fit_views, 4u);
+  EXPECT_EQ(draft.runs.front().materials, 1u);
   EXPECT_GT(draft.seconds, 0.0);
   EXPECT_GT(draft.cpu_seconds, 0.0);
   // No noise and one albedo: what is left is the silhouette, where a pixel's centre misses the mesh, and bilinear sampling.
   EXPECT_LT(draft.clipped.value, 0.05);
-  EXPECT_EQ(draft.clipped_by_view.size(), 2u);
+  EXPECT_EQ(draft.runs.front().clipped.by_view.size(), 2u);
   EXPECT_TRUE(std::isfinite(draft.clipped.sigma));
   EXPECT_THAT(tradeoff.measurements[1].failure, testing::HasSubstr("4 photographs"));
-  EXPECT_EQ(tradeoff.measurements[2].fit_views, 3u);
+  EXPECT_EQ(tradeoff.measurements[2].runs.front().fit_views, 3u);
 
   EXPECT_EQ(progress.stages, 1);
   EXPECT_EQ(progress.last, progress.total);
@@ -75,11 +76,42 @@ TEST(Tradeoff, MeasuresEachSettingAndSaysWhyNotWhereItCannot) {
   EXPECT_FALSE(json.at("settings").at(1).at("failure").is_null());
 }
 
+// Materials fitted to other points are other materials, if only by the last digits.
+TEST(Tradeoff, FitsEachSettingWithEachDraw) {
+  const TemporaryFolder folder;
+  std::vector<TradeoffSetting> settings = tradeoff_settings(1, false, {"draft", "errors-given"});
+  for (TradeoffSetting& setting : settings) {
+    setting.options = FitOptions::preset("draft");
+    setting.options.materials = 1;
+    setting.options.learning_lumitexels = setting.options.final_lumitexels = 100;  // of some thousand
+  }
+  settings[1].options.errors = ErrorSource::Given;
+  TradeoffJournal journal(folder.path() / "kept.json", "a");
+  RecordedProgress progress;
+  const Tradeoff tradeoff = measure_tradeoff(small_session(folder), settings, 2, &journal, progress);
+  EXPECT_EQ(tradeoff.draws, 2);
+  EXPECT_FALSE(progress.backwards);
+  EXPECT_EQ(progress.last, progress.total);
+  for (std::size_t k = 0; k < settings.size(); ++k) {
+    const TradeoffMeasurement& m = tradeoff.measurements[k];
+    ASSERT_EQ(m.runs.size(), 2u);
+    EXPECT_NE(m.runs[0].clipped.pooled, m.runs[1].clipped.pooled);
+    EXPECT_GT(m.clipped.draw_deviation, 0.0);
+    for (const int draw : {0, 1}) {
+      settings[k].options.draw = draw;
+      EXPECT_EQ(journal.known(settings[k])->clipped.pooled, m.runs[static_cast<std::size_t>(draw)].clipped.pooled);
+    }
+  }
+  const auto json = nlohmann::json::parse(tradeoff_json(tradeoff));
+  EXPECT_EQ(json.at("settings").at(0).at("measured").at("draws").size(), 2u);
+  EXPECT_TRUE(json.at("settings").at(0).at("against_standard").is_null());
+}
+
 TEST(Tradeoff, SaysWhatToDoWhereNothingIsHeldOut) {
   CalibratedSession session;
   session.views.resize(3);
   NoProgress progress;
-  EXPECT_BAD_INPUT(measure_tradeoff(session, tradeoff_settings(4, false, {}), nullptr, progress), "held out", "split", "lights.csv");
+  EXPECT_BAD_INPUT(measure_tradeoff(session, tradeoff_settings(4, false, {}), 1, nullptr, progress), "held out", "split", "lights.csv");
 }
 
 TEST(TradeoffSettings, AreTheNamedOnesAndTheReferenceOnlyIfAsked) {
