@@ -1,9 +1,11 @@
 #include "processing/fit/fit_model.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "drivers/error.h"
 #include "processing/fit/fill_atlas.h"
+#include "processing/fit/indirect_worth.h"
 #include "processing/fit/interreflection_stage.h"
 #include "processing/fit/normal_stage.h"
 #include "processing/fit/observe.h"
@@ -117,13 +119,24 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
     if (worth_it) model.indirect_bounces = options.interreflections.light.bounces;
     return worth_it;
   };
+  // Whether the samples show what was taken out of them; else it is put back.
+  const auto show_light = [&](IndirectRemoval& removal) {
+    const Observations as_photographed = std::move(observations);
+    look();
+    removal.judge(indirect_worth(as_photographed, observations, model, reflectance.clustering.label, reflectance.weights, error));
+    if (removal.summary().worth->enough()) return true;
+    removal.put_back();
+    model.indirect_bounces = 0;
+    look();
+    return false;
+  };
   std::optional<IndirectRemoval> indirect;
   bool changed = false;
   if (options.interreflections.wanted) {
     timer.begin("light between surfaces");
     indirect.emplace(session, gathered.set, scene, model, options.interreflections);
     if (indirect->can_matter()) changed = take_out(*indirect, last_stage(model));
-    if (changed) look();
+    if (changed) changed = show_light(*indirect);
   }
   if (auto normals = seek_normals(session, inputs, reflectance.clustering, model, summary, timer, progress)) {
     turn(normals->normal, gathered.set);

@@ -110,6 +110,15 @@ bool IndirectRemoval::remove(const Model& model, FitStage stage) {
   return true;
 }
 
+void IndirectRemoval::put_back() {
+  for (std::size_t t = 0; t < measured_.size(); ++t) {
+    lumitexels_.tiles[t].reflectance = measured_[t];
+    lumitexels_.tiles[t].variance = measured_variance_[t];
+    std::fill(taken_[t].begin(), taken_[t].end(), 0.0f);
+  }
+  summary_.share = 0.0;
+}
+
 Image IndirectRemoval::map(int width, int height) const {
   Image result(width, height, 2);
   std::size_t i = 0;

@@ -29,6 +29,10 @@ class IndirectRemoval {
   // samples as photographed. Only where they change by so much that they should be fitted again: else false, and they are as they were.
   bool remove(const Model& model, FitStage stage);
 
+  // The samples as photographed again.
+  void put_back();
+  void judge(const IndirectWorth& worth) { summary_.worth = worth; }
+
   const IndirectSummary& summary() const { return summary_; }
   // Of each texel: bound and share found (Model::indirect).
   Image map(int width, int height) const;

@@ -88,6 +88,8 @@ json indirect_json(const IndirectSummary& indirect, const IndirectOptions& light
           {"samples_followed", indirect.samples},
           {"share_of_reflectance", indirect.share},
           {"change_by_round", indirect.change},
+          {"slope", indirect.worth ? json(indirect.worth->slope) : json(nullptr)},
+          {"slope_sigma", indirect.worth && std::isfinite(indirect.worth->sigma) ? json(indirect.worth->sigma) : json(nullptr)},
           {"dropped_paths", indirect.dropped_paths}};
 }
 

@@ -217,6 +217,11 @@ std::string indirect_line(const FitSummary& summary) {
   std::string text = line("light between surfaces: can matter on %.1f %% of the surface (estimated to be at most %.3f of a lamp's)",
                           100.0 * static_cast<double>(indirect.concerned) / static_cast<double>(summary.lumitexels), indirect.largest_bound);
   if (indirect.change.empty()) return text + ", so nobody followed it\n";
+  if (indirect.worth) {
+    text += line("; residuals follow it with a slope of %.2f +- %.2f (asked for: over %.1f and %.0f sigma)", indirect.worth->slope, indirect.worth->sigma,
+                 IndirectWorth::kLeastSlope, IndirectWorth::kStandardErrors);
+    if (!indirect.worth->enough()) return text + ", so it is left in\n";
+  }
   text += line("; %.1f %% of what was photographed there was taken out; each round changed the samples there by", 100.0 * indirect.share);
   for (const double change : indirect.change) text += line(" %.2f %%", 100.0 * change);
   return text + "\n";

@@ -121,6 +121,19 @@ TEST(IndirectRemoval, TheTrueAlbedoIsFoundWithinTheRoundsOfThePresets) {
   EXPECT_NEAR(albedo_after(4), kAlbedo, 0.01 * kAlbedo);
 }
 
+TEST(IndirectRemoval, WhatWasTakenOutCanBePutBackToTheBit) {
+  const CalibratedSession session = bowl_session();
+  LumitexelSet lumitexels = bowl_lumitexels(kAlbedo, 1);
+  const LumitexelTile before = lumitexels.tiles[0];
+  IndirectRemoval removal(session, lumitexels, RayScene(session.mesh), bowl_model(kAlbedo), {});
+  ASSERT_TRUE(removal.remove(bowl_model(kAlbedo), FitStage::Projection));
+  EXPECT_NE(lumitexels.tiles[0].reflectance, before.reflectance);
+  removal.put_back();
+  EXPECT_EQ(lumitexels.tiles[0].reflectance, before.reflectance);
+  EXPECT_EQ(lumitexels.tiles[0].variance, before.variance);
+  EXPECT_EQ(removal.summary().share, 0.0);
+}
+
 TEST(IndirectRemoval, WhereNothingWouldChangeSamplesKeepTheirBits) {
   const CalibratedSession session = bowl_session();
   LumitexelSet lumitexels = bowl_lumitexels(kAlbedo, 0);
