@@ -127,12 +127,12 @@ class PrincipalProblem {
   int size_ = 0;
 };
 
-LumitexelList learnt_from(const Observations& observations, const LumitexelList& members, std::size_t most) {
+LumitexelList learnt_from(const Observations& observations, const LumitexelList& members, std::size_t most, int draw) {
   LumitexelList some;
   for (const std::size_t i : members) {
     if (observations.of(i).size() >= 2) some.push_back(i);  // one sample fits any mixture
   }
-  return thinned(some, most);
+  return thinned(some, most, draw);
 }
 
 }  // namespace
@@ -141,7 +141,7 @@ PrincipalFunctions principal_functions(const Observations& observations, const L
                                        const ErrorModel& error, const PrincipalOptions& options) {
   PrincipalFunctions result{basis, 0.0, 0.0, 0};
   if (nothing_varies(options.prior)) return result;  // texels are the material, whatever the functions
-  const PrincipalProblem problem(observations, learnt_from(observations, members, options.most_lumitexels), basis, error, options);
+  const PrincipalProblem problem(observations, learnt_from(observations, members, options.most_lumitexels, options.draw), basis, error, options);
   if (problem.lumitexels() == 0) return result;
   Eigen::VectorXd values = problem.start(basis);
   result.basis = problem.basis_at(values, basis);  // within the bounds

@@ -11,6 +11,7 @@ namespace lumitexel {
 struct PrincipalOptions {
   int functions = 3;                     // so many of the basis, from its front, are moved
   std::size_t most_lumitexels = 2000;    // of the members that the functions are learnt from
+  int draw = 0;                          // which of them (draw_phase.h)
   int max_iterations = 12;
   TexelPrior prior;                      // on the texels' weights
   MaterialFitOptions fit;                // lobes, channels' shapes and bounds

@@ -30,11 +30,11 @@ ErrorWithSpread over_draws(const std::vector<HeldoutError>& draws) {
     by_draw.push_back(draw.pooled);
     for (std::size_t v = 0; v < by_view.size(); ++v) by_view[v] += draw.by_view.at(v) / static_cast<double>(draws.size());
   }
-  const double over_draws = variance_of(by_draw), over_views = variance_of(by_view);
+  const double draw_variance = variance_of(by_draw), view_variance = variance_of(by_view);
   result.value = mean_of(by_draw);
-  result.draw_deviation = std::sqrt(over_draws);
-  const double draw_part = draws.size() > 1 ? over_draws / static_cast<double>(draws.size()) : 0.0;
-  result.sigma = std::sqrt(over_views / static_cast<double>(by_view.size()) + draw_part);
+  result.draw_deviation = std::sqrt(draw_variance);
+  const double draw_part = draws.size() > 1 ? draw_variance / static_cast<double>(draws.size()) : 0.0;
+  result.sigma = std::sqrt(view_variance / static_cast<double>(by_view.size()) + draw_part);
   return result;
 }
 

@@ -1,7 +1,7 @@
 // Held-out errors of several fits of one setting, and how sure they are.
 //
-// Two chances are in such an error: which photographs judge, and which surface points the materials were learnt on (the draw). Both are
-// shared by all settings, so differences between settings are taken view by view and draw by draw.
+// Two chances are in such an error: which photographs judge, and which surface points the materials were learnt on (the draw). Settings share the
+// first, and most of them the second, so differences between settings are taken view by view and draw by draw.
 #pragma once
 
 #include <limits>

@@ -5,7 +5,7 @@
 
 #include "drivers/error.h"
 #include "processing/fit/fill_atlas.h"
-#include "processing/fit/indirect_worth.h"
+#include "processing/fit/indirect_trial.h"
 #include "processing/fit/interreflection_stage.h"
 #include "processing/fit/normal_stage.h"
 #include "processing/fit/observe.h"
@@ -119,24 +119,31 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
     if (worth_it) model.indirect_bounces = options.interreflections.light.bounces;
     return worth_it;
   };
-  // Whether the samples show what was taken out of them; else it is put back.
-  const auto show_light = [&](IndirectRemoval& removal) {
-    const Observations as_photographed = std::move(observations);
-    look();
-    removal.judge(indirect_worth(as_photographed, observations, model, reflectance.clustering.label, reflectance.weights, error));
-    if (removal.summary().worth->enough()) return true;
-    removal.put_back();
-    model.indirect_bounces = 0;
-    look();
-    return false;
-  };
   std::optional<IndirectRemoval> indirect;
+  std::optional<IndirectWorth> indirect_worth;
+  // Whether the samples show what was taken out of them; else it is put back.
+  const auto is_shown = [&] {
+    const Observations as_photographed = std::move(observations);
+    const ErrorModel error_as_photographed = error;
+    look();
+    indirect_worth = try_without_indirect(as_photographed, observations, model, reflectance.clustering.label, reflectance.weights, error_as_photographed);
+    return indirect_worth->enough();
+  };
   bool changed = false;
   if (options.interreflections.wanted) {
     timer.begin("light between surfaces");
     indirect.emplace(session, gathered.set, scene, model, options.interreflections);
     if (indirect->can_matter()) changed = take_out(*indirect, last_stage(model));
-    if (changed) changed = show_light(*indirect);
+    const bool put_back = changed && options.interreflections.ask && !is_shown();
+    if (put_back) {
+      indirect->put_back();
+      model.indirect_bounces = 0;
+    }
+    if (changed) {
+      indirect->even_out_variance();
+      look();
+    }
+    changed = changed && !put_back;
   }
   if (auto normals = seek_normals(session, inputs, reflectance.clustering, model, summary, timer, progress)) {
     turn(normals->normal, gathered.set);
@@ -151,11 +158,13 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
     timer.begin("light between surfaces, round " + std::to_string(round));
     changed = take_out(*indirect, last_stage(model));
     if (!changed) break;
+    indirect->even_out_variance();
     look();
     fit_again(false, ", round " + std::to_string(round));
   }
   if (indirect) {
     summary.indirect = indirect->summary();
+    summary.indirect->worth = indirect_worth;
     model.indirect = indirect->map(model.width, model.height);
   }
 

@@ -25,6 +25,7 @@ const char* to_string(NormalChoice choice);  // "auto", "fitted", "texel", "mesh
 // Whether light between the object's surfaces is sought (interreflection_stage.h), and how.
 struct InterreflectionOptions {
   bool wanted = true;
+  bool ask = true;  // whether the photographs show it (indirect_worth.h); false: taken out wherever it can matter
   int rounds = 1;  // at most, and at least 1; the first costs no fit of its own where normals are fitted after it
   IndirectOptions light;
 };

@@ -21,7 +21,7 @@ struct IndirectSummary {
   std::size_t concerned = 0;      // lumitexels where it can matter
   std::size_t samples = 0;        // of theirs, that were followed in the last round
   double share = 0;               // of these samples' reflectance that was taken out
-  std::optional<IndirectWorth> worth;  // nothing: there was nothing to judge
+  std::optional<IndirectWorth> worth;  // nothing: nobody asked
   std::vector<double> change;     // rms of what each round would change, over the rms of these samples; empty: not needed
   std::size_t dropped_paths = 0;  // that were not finite
 };

@@ -48,27 +48,24 @@ bool IndirectRemoval::can_matter() const {
   return static_cast<double>(summary_.concerned) > kFewestOfAll * static_cast<double>(bound_.size());
 }
 
-// Lumitexel by lumitexel and channel by channel. The paths' variance is the lumitexel's mean: a sample's own goes with how much its few paths
-// happened to find, and would make samples count more from which too little is taken.
+// Lumitexel by lumitexel and channel by channel.
 void IndirectRemoval::correct(IndirectLight& found) const {
   const auto channels = static_cast<std::size_t>(lumitexels_.channels);
   for (std::size_t t = 0; t < measured_.size(); ++t) {
     const LumitexelTile& tile = lumitexels_.tiles[t];
     for (std::size_t i = 0; i < tile.size(); ++i) {
       for (std::size_t c = 0; c < channels; ++c) {
-        double measured = 0.0, taken = 0.0, indirect = 0.0, variance = 0.0;
+        double measured = 0.0, taken = 0.0, indirect = 0.0;
         const std::size_t first = tile.first_sample[i] * channels + c, last = tile.first_sample[i + 1] * channels + c;
         for (std::size_t k = first; k < last; k += channels) {
           measured += static_cast<double>(measured_[t][k]);
           taken += static_cast<double>(taken_[t][k]);
           indirect += static_cast<double>(found.reflectance[t][k]);
-          variance += static_cast<double>(found.variance[t][k]);
         }
         const double share = share_to_take(measured, measured - taken, indirect);
-        const double mean_variance = first < last ? square(share) * variance * static_cast<double>(channels) / static_cast<double>(last - first) : 0.0;
         for (std::size_t k = first; k < last; k += channels) {
           found.reflectance[t][k] *= static_cast<float>(share);
-          found.variance[t][k] = static_cast<float>(mean_variance);
+          found.variance[t][k] *= static_cast<float>(square(share));
         }
       }
     }
@@ -108,6 +105,22 @@ bool IndirectRemoval::remove(const Model& model, FitStage stage) {
   }
   taken_ = std::move(found.reflectance);
   return true;
+}
+
+void IndirectRemoval::even_out_variance() {
+  const auto channels = static_cast<std::size_t>(lumitexels_.channels);
+  for (std::size_t t = 0; t < measured_.size(); ++t) {
+    LumitexelTile& tile = lumitexels_.tiles[t];
+    for (std::size_t i = 0; i < tile.size(); ++i) {
+      for (std::size_t c = 0; c < channels; ++c) {
+        const std::size_t first = tile.first_sample[i] * channels + c, last = tile.first_sample[i + 1] * channels + c;
+        double variance = 0.0;
+        for (std::size_t k = first; k < last; k += channels) variance += static_cast<double>(tile.variance[k] - measured_variance_[t][k]);
+        const double mean = first < last ? variance * static_cast<double>(channels) / static_cast<double>(last - first) : 0.0;
+        for (std::size_t k = first; k < last; k += channels) tile.variance[k] = measured_variance_[t][k] + static_cast<float>(mean);
+      }
+    }
+  }
 }
 
 void IndirectRemoval::put_back() {

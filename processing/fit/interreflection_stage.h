@@ -26,12 +26,15 @@ class IndirectRemoval {
   // Whether enough of the surface can get enough light from other surfaces.
   bool can_matter() const;
   // Predicts by the model at `stage`, which was fitted to the samples as they are, and takes that instead of what was taken before out of the
-  // samples as photographed. Only where they change by so much that they should be fitted again: else false, and they are as they were.
+  // samples as photographed. Only where they change by so much that they should be fitted again: else false, and they are as they were. Variances
+  // then have each sample's own scatter of its paths.
   bool remove(const Model& model, FitStage stage);
+  // Before a fit each lumitexel's samples get the mean of their scatter: a sample's own goes with how much its few paths happened to find, and would make
+  // samples count more from which too little is taken.
+  void even_out_variance();
 
   // The samples as photographed again.
   void put_back();
-  void judge(const IndirectWorth& worth) { summary_.worth = worth; }
 
   const IndirectSummary& summary() const { return summary_; }
   // Of each texel: bound and share found (Model::indirect).

@@ -79,6 +79,17 @@ json outliers_json(const Outliers& outliers, const CalibratedSession& session) {
           {"by_material", by_material}};
 }
 
+json worth_json(const std::optional<IndirectWorth>& worth) {
+  if (!worth) return nullptr;
+  return {{"residual_slope", worth->slope},
+          {"sigma", std::isfinite(worth->sigma) ? json(worth->sigma) : json(nullptr)},
+          {"asked_for_slope", IndirectWorth::kLeastSlope},
+          {"asked_for_sigmas", IndirectWorth::kStandardErrors},
+          {"photographs", worth->photographs},
+          {"samples", worth->samples},
+          {"enough", worth->enough()}};
+}
+
 json indirect_json(const IndirectSummary& indirect, const IndirectOptions& light) {
   return {{"bounces", light.bounces},
           {"paths_a_sample", light.paths},
@@ -88,8 +99,8 @@ json indirect_json(const IndirectSummary& indirect, const IndirectOptions& light
           {"samples_followed", indirect.samples},
           {"share_of_reflectance", indirect.share},
           {"change_by_round", indirect.change},
-          {"slope", indirect.worth ? json(indirect.worth->slope) : json(nullptr)},
-          {"slope_sigma", indirect.worth && std::isfinite(indirect.worth->sigma) ? json(indirect.worth->sigma) : json(nullptr)},
+          {"taken_out", indirect.share > 0.0},
+          {"shown_by_photographs", worth_json(indirect.worth)},
           {"dropped_paths", indirect.dropped_paths}};
 }
 
@@ -104,7 +115,7 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
                        {"most_lobes", options.most_lobes},
                        {"principal_functions", options.principal_functions},
                        {"normals", to_string(options.normals)},
-                       {"interreflections", options.interreflections.wanted},
+                       {"interreflections", !options.interreflections.wanted ? "off" : options.interreflections.ask ? "auto" : "always"},
                        {"intensity_weight", options.method == FitMethod::Paper ? json(options.intensity_weight) : json(nullptr)},
                        {"materials", options.materials},
                        {"layout", to_string(options.layout.choice)},

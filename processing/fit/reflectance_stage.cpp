@@ -110,6 +110,7 @@ void move_bases(const Observations& observations, const Clustering& clustering, 
     std::vector<Brdf>& basis = model.materials[j].basis;
     PrincipalOptions principal;
     principal.most_lumitexels = options.final_lumitexels;
+    principal.draw = options.draw;
     principal.prior = summary.prior[j].prior;
     principal.fit = clustering.fit;
     const auto moved = [&](const LumitexelList& learnt) {

@@ -16,8 +16,8 @@ constexpr std::int64_t kWhole_percent = 100;
 // The stages that one setting reports become a part of one long stage, so that rate and time left are those of the whole.
 class SettingProgress final : public Progress {
  public:
-  SettingProgress(Progress& whole, std::size_t before, std::size_t settings, int stages)
-      : whole_(whole), before_(static_cast<double>(before)), settings_(static_cast<double>(settings)), stages_(stages) {}
+  SettingProgress(Progress& whole, std::size_t before, std::size_t runs, int stages)
+      : whole_(whole), before_(static_cast<double>(before)), runs_(static_cast<double>(runs)), stages_(stages) {}
   void begin(const std::string&, std::int64_t total, const std::string&) override {
     ++stage_;
     total_ = std::max<std::int64_t>(1, total);
@@ -25,12 +25,12 @@ class SettingProgress final : public Progress {
   }
   void update(std::int64_t done) override {
     const double share = (static_cast<double>(stage_ - 1) + static_cast<double>(done) / static_cast<double>(total_)) / stages_;
-    whole_.update(static_cast<std::int64_t>(static_cast<double>(kWhole_percent) * (before_ + std::min(1.0, share)) / settings_));
+    whole_.update(static_cast<std::int64_t>(static_cast<double>(kWhole_percent) * (before_ + std::min(1.0, share)) / runs_));
   }
 
  private:
   Progress& whole_;
-  double before_, settings_;
+  double before_, runs_;
   std::int64_t total_ = 1, stage_ = 0;
   int stages_;
 };
@@ -65,13 +65,12 @@ bool dominates(const TradeoffMeasurement& a, const TradeoffMeasurement& b) {
 TradeoffMeasurement summed_up(const TradeoffSetting& setting, const std::vector<TradeoffRun>& runs) {
   TradeoffMeasurement measurement;
   measurement.setting = setting;
+  measurement.runs = runs;
   for (const TradeoffRun& run : runs) {
     if (run.measured()) continue;
     measurement.failure = run.failure;
-    measurement.runs = {run};
     return measurement;
   }
-  measurement.runs = runs;
   for (const TradeoffRun& run : runs) {
     measurement.cpu_seconds += run.cpu_seconds / static_cast<double>(runs.size());
     measurement.seconds += run.seconds / static_cast<double>(runs.size());
@@ -101,6 +100,7 @@ Tradeoff measure_tradeoff(const CalibratedSession& session, const std::vector<Tr
   // Draw after draw, so that whoever stops early and goes on with fewer draws has all settings.
   for (std::size_t done = 0; done < all; ++done) {
     const std::size_t k = done % settings.size();
+    if (!runs[k].empty() && !runs[k].back().measured()) continue;  // as it would again
     const TradeoffSetting setting = with_draw(settings[k], static_cast<int>(done / settings.size()));
     std::optional<TradeoffRun> run = journal != nullptr ? journal->known(setting) : std::nullopt;
     if (!run) {
@@ -111,6 +111,7 @@ Tradeoff measure_tradeoff(const CalibratedSession& session, const std::vector<Tr
     runs[k].push_back(*run);
     progress.update(kWhole_percent * static_cast<std::int64_t>(done + 1) / static_cast<std::int64_t>(all));
   }
+  progress.update(kWhole_percent);
   for (std::size_t k = 0; k < settings.size(); ++k) tradeoff.measurements.push_back(summed_up(settings[k], runs[k]));
   return tradeoff;
 }
@@ -140,11 +141,15 @@ std::optional<TradeoffGain> gain_over_standard(const Tradeoff& tradeoff, const T
   return gain;
 }
 
-std::string materials_found(const TradeoffMeasurement& measurement) {
+std::pair<std::size_t, std::size_t> materials_found(const TradeoffMeasurement& measurement) {
   const auto [least, most] = std::minmax_element(measurement.runs.begin(), measurement.runs.end(),
                                                  [](const auto& a, const auto& b) { return a.materials < b.materials; });
-  const std::string fewest = std::to_string(least->materials);
-  return least->materials == most->materials ? fewest : fewest + "-" + std::to_string(most->materials);
+  return {least->materials, most->materials};
+}
+
+std::string materials_text(const TradeoffMeasurement& measurement) {
+  const auto [least, most] = materials_found(measurement);
+  return std::to_string(least) + (most > least ? "-" + std::to_string(most) : "");
 }
 
 }  // namespace lumitexel

@@ -11,6 +11,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "processing/calibration/calibrated_session.h"
@@ -25,7 +26,7 @@ class TradeoffJournal;
 
 struct TradeoffMeasurement {
   TradeoffSetting setting;
-  std::vector<TradeoffRun> runs;  // a draw each, all measured, or one that failed
+  std::vector<TradeoffRun> runs;  // a draw each, at least one; after one that failed there is none
   std::string failure;            // the first run's that failed: then nothing below is set
   double cpu_seconds = 0, seconds = 0;     // mean of the runs
   std::optional<std::int64_t> peak_bytes;  // the largest
@@ -55,7 +56,7 @@ struct Tradeoff {
   std::vector<TradeoffMeasurement> measurements;  // in the order of the settings
 };
 
-// Each setting with draws 0 to draws - 1. Throws BadInput, before anything is fitted, if the session holds no view out. A setting whose fit
+// Each setting with draws 0 to draws - 1, at least one. Throws BadInput, before anything is fitted, if the session holds no view out. A setting whose fit
 // fails (tradeoff_run.h) is a measurement with a failure; the others go on. With a journal, runs that it knows are not made again, and the
 // others are kept in it.
 Tradeoff measure_tradeoff(const CalibratedSession& session, const std::vector<TradeoffSetting>& settings, int draws, TradeoffJournal* journal,
@@ -67,8 +68,9 @@ std::vector<bool> pareto_front(const std::vector<TradeoffMeasurement>& measureme
 // Nothing for a failure, or without a measurement of the standard preset.
 std::optional<TradeoffGain> gain_over_standard(const Tradeoff& tradeoff, const TradeoffMeasurement& measurement);
 
-// "17", or "17-20" where draws differ; of a measured setting.
-std::string materials_found(const TradeoffMeasurement& measurement);
+// Least and most of its draws.
+std::pair<std::size_t, std::size_t> materials_found(const TradeoffMeasurement& measurement);
+std::string materials_text(const TradeoffMeasurement& measurement);  // "17", or "17-20" where draws differ
 
 // The JSON of `lumitexel tradeoff --json`, as text; figures that do not exist are null.
 std::string tradeoff_json(const Tradeoff& tradeoff);

@@ -36,7 +36,8 @@ Json bytes_json(const std::optional<std::int64_t>& bytes) { return bytes ? Json(
 Json measurement_json(const TradeoffMeasurement& measurement) {
   Json draws = Json::array();
   for (const TradeoffRun& run : measurement.runs) draws.push_back(run_json(run));
-  return {{"materials", materials_found(measurement)},
+  const auto [least, most] = materials_found(measurement);
+  return {{"materials", {{"least", least}, {"most", most}}},
           {"fit_views", measurement.runs.front().fit_views},
           {"seconds", measurement.seconds},
           {"cpu_seconds", measurement.cpu_seconds},
@@ -64,6 +65,7 @@ Json setting_json(const TradeoffSetting& setting) {
           {"lobe_shapes", to_string(options.lobe_shapes)},
           {"normals", to_string(options.normals)},
           {"interreflections", options.interreflections.wanted},
+          {"interreflections_asked_for", options.interreflections.ask},
           {"interreflection_rounds", options.interreflections.rounds},
           {"errors", to_string(options.errors)},
           {"most_lobes", options.most_lobes},
@@ -111,6 +113,7 @@ std::string tradeoff_json(const Tradeoff& tradeoff) {
   for (std::size_t i = 0; i < front.size(); ++i) {
     const TradeoffMeasurement& measurement = tradeoff.measurements[i];
     Json entry = {{"name", measurement.setting.name}, {"what", measurement.setting.what}, {"options", setting_json(measurement.setting)}};
+    entry["options"].erase("draw");  // the k-th of "draws" is draw k
     entry["failure"] = measurement.measured() ? Json(nullptr) : Json(measurement.failure);
     entry["measured"] = measurement.measured() ? measurement_json(measurement) : Json(nullptr);
     entry["pareto_front"] = static_cast<bool>(front[i]);

@@ -21,7 +21,7 @@ std::vector<TradeoffSetting> all_settings(std::optional<int> materials) {
     return settings.back();
   };
   add("draft", "draft preset: the mesh's normals, and light between surfaces left in", "draft");
-  add(kStandardSetting, "standard preset: learnt on 2,000 points, up to two Lafortune lobes, normals where they pay, light between surfaces taken out once");
+  add(kStandardSetting, "standard preset: learnt on 2,000 points, up to two Lafortune lobes, normals where they pay, light between surfaces taken out once where photographs show it");
   for (const std::size_t learning : {500u, 1000u, 5000u, 10000u}) {
     const std::string number = std::to_string(learning);
     add("learning-" + number, "materials learnt on " + number + " points").options.learning_lumitexels = learning;
@@ -33,7 +33,7 @@ std::vector<TradeoffSetting> all_settings(std::optional<int> materials) {
     else add("materials-" + number, number + " materials").options.materials = count;
   }
   add("final-10000", "each material fitted to 10,000 of its points").options.final_lumitexels = 10000;
-  add("rounds-2", "light between surfaces taken out twice").options.interreflections.rounds = 2;
+  add("rounds-2", "light between surfaces taken out twice, where photographs show it").options.interreflections.rounds = 2;
   add("principal", "basis functions moved where that predicts better").options.principal_functions = true;
   add("errors-given", "30 % errors everywhere, nothing estimated").options.errors = ErrorSource::Given;
   add("lobes-1", "no more than one lobe a material").options.most_lobes = 1;

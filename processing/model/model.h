@@ -54,7 +54,7 @@ struct Model {
   // Light between the object's own surfaces: after how many bounces it was taken out of the samples that the last stage was fitted to. 0: it was
   // not, and is in the reflectance.
   int indirect_bounces = 0;
-  // 2 channels: the most that it could be beside a lamp's light (indirect_bound.h), and what was found, as a share of the texel's samples; empty
+  // 2 channels: the most that it could be beside a lamp's light (indirect_bound.h), and what was taken out, as a share of the texel's samples; empty
   // where nobody looked.
   Image indirect{};
   Image uncertainty;  // one-sigma of the texel's reflectance prediction, relative; 1 channel

@@ -24,7 +24,7 @@ std::string introduction(const Json& data) {
   const std::string what = "Surfaces that face each other light each other. A fit that knows the lamp alone takes that light for brighter or more colourful "
                            "material. ";
   if (data.at("bounces") == 0) {
-    return what + "Here it cannot matter, or the photographs do not show it: nothing was taken out of them.";
+    return what + "Here it cannot matter, was too little to change anything, or the photographs do not show it: nothing was taken out of them.";
   }
   return what + "Where it can matter, it was computed from the model itself (" + std::to_string(data.at("bounces").get<int>()) +
          " bounces), taken out of the photographs, and the materials fitted anew.";

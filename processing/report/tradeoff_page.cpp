@@ -16,6 +16,11 @@ std::string with_spread(const ErrorWithSpread& error) {
 
 std::string memory(const std::optional<std::int64_t>& bytes) { return bytes ? html::number(static_cast<double>(*bytes) / 1e6) : "–"; }
 
+// What sigmas do not cover with one draw.
+std::string of_one_draw(const Tradeoff& tradeoff) {
+  return tradeoff.draws > 1 ? "" : " Each setting was fitted once: by how much other draws of surface points would differ is not known (--draws 4 tells).";
+}
+
 std::string tile(const std::string& value, const std::string& meaning) {
   return "<div class=\"tile\"><b>" + html::escaped(value) + "</b><span>" + html::escaped(meaning) + "</span></div>\n";
 }
@@ -48,8 +53,8 @@ std::string plot_section(const Tradeoff& tradeoff) {
   return html::section(
       "Error against CPU time",
       "Lower is better, further left is faster. The steps are the Pareto front: the best error that can be had within that time.",
-      html::figure(plot, "Orange: on the front. Blue: another setting is both faster and better. Bars: one standard error, over held-out "
-                         "photographs and draws; settings move together, so differences are surer than the bars say (next table but one)."));
+      html::figure(plot, "Orange: on the front. Blue: another setting is both faster and better. Bars: one standard error, over the held-out photographs and draws "
+                         "that there were; settings move together, so differences are surer than the bars say (next table but one)." + of_one_draw(tradeoff)));
 }
 
 std::string error_section(const Tradeoff& tradeoff) {
@@ -63,15 +68,14 @@ std::string error_section(const Tradeoff& tradeoff) {
       continue;
     }
     rows.push_back({m.setting.name, front[i] ? "front" : "", with_spread(m.clipped), html::number(m.clipped.draw_deviation), with_spread(m.relative), with_spread(m.square_root),
-                    html::number(m.cpu_seconds), html::number(m.seconds), memory(m.peak_bytes), materials_found(m), std::to_string(m.runs.front().fit_views)});
+                    html::number(m.cpu_seconds), html::number(m.seconds), memory(m.peak_bytes), materials_text(m), std::to_string(m.runs.front().fit_views)});
   }
   std::string body = html::table({"setting", "", "clipped error", "one draw", "relative", "square roots", "CPU seconds", "seconds", "peak MB", "materials", "views"}, rows);
   if (!failures.empty()) body += "<h3>Not measured</h3><ul>" + failures + "</ul>";
   return html::section("Each setting",
                        "RMS of rendering minus photograph over that of the photograph, over all held-out pixels; clipped: both at the photograph's "
                        "99.9th percentile; square roots: of their roots. ±: one standard error, over the held-out photographs and over draws of the "
-                       "surface points that materials are learnt on. One draw: how far a single fit strays (standard deviation); an en dash where "
-                       "there was but one.",
+                       "surface points that materials are learnt on. One draw: how far a single fit strays (standard deviation)." + of_one_draw(tradeoff),
                        body);
 }
 
@@ -85,7 +89,8 @@ std::string gain_section(const Tradeoff& tradeoff) {
   if (rows.empty()) return "";
   return html::section("Against the standard preset",
                        "Gain: standard's clipped error less this setting's; above 0, this setting is better. ± is the standard error of the "
-                       "differences on the same photographs and draws: a gain within twice that may be chance. Per CPU second: of a slower setting, what each "
+                       "differences on the same photographs and draws: a gain within twice that, with two to four draws within three times, may be chance, and of many "
+                       "settings some gain by chance alone. Per CPU second: of a slower setting, what each "
                        "second more buys; of a faster one, what each second saved costs; below 0, one of the two is both faster and better. An en "
                        "dash where the times differ by less than 5 %, as runs of one setting do.",
                        html::table({"setting", "gain", "more CPU seconds", "gain per CPU second"}, rows));

@@ -32,13 +32,26 @@ std::string formatted(const char* format, Values... values) {
   return buffer;
 }
 
-struct Axes {
-  double low_log, high_log;  // decadic logarithm of seconds
-  double low, high;          // error
-  double x(double seconds) const {
-    return kLeft_px + (std::log10(seconds) - low_log) / (high_log - low_log) * (kWidth_px - kLeft_px - kRight_px);
+// Decadic logarithms of what an axis spans.
+struct Range {
+  double low = 1e9, high = -1e9;
+  void take(double value) {
+    low = std::min(low, std::log10(value));
+    high = std::max(high, std::log10(value));
   }
-  double y(double error) const { return kHeight_px - kBottom_px - (error - low) / (high - low) * (kHeight_px - kTop_px - kBottom_px); }
+  Range with_room(double share) const {
+    const double room = share * (high - low) + 0.02;
+    return {low - room, high + room};
+  }
+  double share(double value) const { return std::clamp((std::log10(value) - low) / (high - low), 0.0, 1.0); }
+  double least() const { return std::pow(10.0, low); }
+  double most() const { return std::pow(10.0, high); }
+};
+
+struct Axes {
+  Range seconds, error;
+  double x(double value) const { return kLeft_px + seconds.share(value) * (kWidth_px - kLeft_px - kRight_px); }
+  double y(double value) const { return kHeight_px - kBottom_px - error.share(value) * (kHeight_px - kTop_px - kBottom_px); }
 };
 
 std::vector<Point> points_of(const Tradeoff& tradeoff) {
@@ -46,37 +59,22 @@ std::vector<Point> points_of(const Tradeoff& tradeoff) {
   std::vector<Point> points;
   for (std::size_t i = 0; i < front.size(); ++i) {
     const TradeoffMeasurement& m = tradeoff.measurements[i];
-    if (!m.measured() || !std::isfinite(m.clipped.value) || m.cpu_seconds <= 0.0) continue;
+    if (!m.measured() || !std::isfinite(m.clipped.value) || m.clipped.value <= 0.0 || m.cpu_seconds <= 0.0) continue;
     points.push_back({m.setting.name, m.cpu_seconds, m.clipped.value, std::isfinite(m.clipped.sigma) ? m.clipped.sigma : 0.0, front[i]});
   }
   return points;
 }
 
+// Both logarithmic: the paper's method may err three times as much as all others, which should not make those one heap.
 Axes axes_of(const std::vector<Point>& points) {
-  Axes axes{1e9, -1e9, 1e9, -1e9};
+  constexpr double kDeepestBar = 0.5;  // of the error: a bar to zero has no end on such an axis
+  Axes axes;
   for (const Point& point : points) {
-    axes.low_log = std::min(axes.low_log, std::log10(point.seconds));
-    axes.high_log = std::max(axes.high_log, std::log10(point.seconds));
-    axes.low = std::min(axes.low, point.error - point.sigma);
-    axes.high = std::max(axes.high, point.error + point.sigma);
+    axes.seconds.take(point.seconds);
+    axes.error.take(std::max(point.error - point.sigma, kDeepestBar * point.error));
+    axes.error.take(point.error + point.sigma);
   }
-  const double room_log = 0.08 * (axes.high_log - axes.low_log) + 0.05, room = 0.06 * (axes.high - axes.low) + 0.001;
-  return {axes.low_log - room_log, axes.high_log + room_log, std::max(0.0, axes.low - room), axes.high + room};
-}
-
-// 1, 2, 5 times powers of ten that lie on the axis; all digits' multiples where those would be fewer than three.
-std::vector<double> time_ticks(const Axes& axes) {
-  const double low = std::pow(10.0, axes.low_log), high = std::pow(10.0, axes.high_log);
-  for (const std::vector<double>& digits : {std::vector<double>{1, 2, 5}, {1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9}}) {
-    std::vector<double> ticks;
-    for (double decade = std::pow(10.0, std::floor(axes.low_log)); decade <= high; decade *= 10.0) {
-      for (const double digit : digits) {
-        if (digit * decade >= low && digit * decade <= high) ticks.push_back(digit * decade);
-      }
-    }
-    if (ticks.size() >= 3 || digits.size() > 3) return ticks;
-  }
-  return {};
+  return {axes.seconds.with_room(0.08), axes.error.with_room(0.06)};
 }
 
 double round_step(double range) {
@@ -87,22 +85,35 @@ double round_step(double range) {
   return 10.0 * decade;
 }
 
+// 1, 2, 5 times powers of ten that lie on the axis; where those would be fewer than four, equal round steps.
+std::vector<double> ticks_of(const Range& range) {
+  std::vector<double> ticks;
+  for (double decade = std::pow(10.0, std::floor(range.low)); decade <= range.most(); decade *= 10.0) {
+    for (const double digit : {1.0, 2.0, 5.0}) {
+      if (digit * decade >= range.least() && digit * decade <= range.most()) ticks.push_back(digit * decade);
+    }
+  }
+  if (ticks.size() > 3) return ticks;
+  ticks.clear();
+  const double step = round_step(range.most() - range.least());
+  for (double k = std::ceil(range.least() / step); k * step <= range.most(); k += 1.0) ticks.push_back(k * step);
+  return ticks;
+}
+
 std::string grid(const Axes& axes) {
   std::string svg;
-  const double step = round_step(axes.high - axes.low);
-  const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
-  for (double error = std::ceil(axes.low / step) * step; error <= axes.high; error += step) {
-    svg += formatted("<path d=\"M%.0f %.1f H%.0f\" stroke=\"#d9dde2\"/><text x=\"%.0f\" y=\"%.1f\" text-anchor=\"end\">%.*f</text>\n", kLeft_px,
-                     axes.y(error), kWidth_px - kRight_px, kLeft_px - 8, axes.y(error) + 4, decimals, error);
+  for (const double error : ticks_of(axes.error)) {
+    svg += formatted("<path d=\"M%.0f %.1f H%.0f\" stroke=\"#d9dde2\"/><text x=\"%.0f\" y=\"%.1f\" text-anchor=\"end\">%.4g</text>\n", kLeft_px,
+                     axes.y(error), kWidth_px - kRight_px, kLeft_px - 8, axes.y(error) + 4, error);
   }
-  for (const double seconds : time_ticks(axes)) {
+  for (const double seconds : ticks_of(axes.seconds)) {
     svg += formatted("<path d=\"M%.1f %.0f V%.0f\" stroke=\"#d9dde2\"/><text x=\"%.1f\" y=\"%.0f\" text-anchor=\"middle\">%g</text>\n",
                      axes.x(seconds), kTop_px, kHeight_px - kBottom_px, axes.x(seconds), kHeight_px - kBottom_px + 18, seconds);
   }
   svg += formatted("<text x=\"%.0f\" y=\"%.0f\" text-anchor=\"middle\">CPU seconds of the fit (logarithmic)</text>", 0.5 * (kLeft_px + kWidth_px),
                    kHeight_px - 12);
   return svg + formatted("<text transform=\"translate(18 %.0f) rotate(-90)\" text-anchor=\"middle\">clipped error on held-out "
-                         "photographs</text>\n",
+                         "photographs (logarithmic)</text>\n",
                          0.5 * (kHeight_px - kBottom_px));
 }
 
@@ -164,7 +175,7 @@ std::string mark(const Axes& axes, const Point& point) {
   const char* colour = point.front ? kFrontColour : kOtherColour;
   const double x = axes.x(point.seconds);
   std::string svg = formatted("<path d=\"M%.1f %.1f V%.1f\" stroke=\"%s\" stroke-opacity=\"0.35\"/>", x, axes.y(point.error + point.sigma),
-                              axes.y(std::max(axes.low, point.error - point.sigma)), colour);
+                              axes.y(std::max(point.error - point.sigma, axes.error.least())), colour);
   svg += formatted("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"5\" fill=\"%s\"><title>", x, axes.y(point.error), colour);
   return svg + html::escaped(point.name) + ": " + html::number(point.error) + " in " + html::number(point.seconds) + " s</title></circle>\n";
 }

@@ -78,7 +78,9 @@ FitOptions fit_options(const FitSettings& settings) {
   if (!settings.lobe_shapes.empty()) options.lobe_shapes = named_value("--lobe-shapes", settings.lobe_shapes, shape_words());
   if (!settings.normals.empty()) options.normals = named_value("--normals", settings.normals, normal_words());
   if (!settings.interreflections.empty()) {
-    options.interreflections.wanted = named_value<bool>("--interreflections", settings.interreflections, {{"auto", true}, {"off", false}});
+    const std::string& word = settings.interreflections;
+    options.interreflections.wanted = named_value<bool>("--interreflections", word, {{"auto", true}, {"always", true}, {"off", false}});
+    options.interreflections.ask = word == "auto";
   }
   if (settings.learning_points) options.learning_lumitexels = *settings.learning_points;
   if (settings.final_points) options.final_lumitexels = *settings.final_points;
@@ -217,9 +219,10 @@ std::string indirect_line(const FitSummary& summary) {
   std::string text = line("light between surfaces: can matter on %.1f %% of the surface (estimated to be at most %.3f of a lamp's)",
                           100.0 * static_cast<double>(indirect.concerned) / static_cast<double>(summary.lumitexels), indirect.largest_bound);
   if (indirect.change.empty()) return text + ", so nobody followed it\n";
+  if (indirect.worth && !indirect.worth->judged()) return text + "; too few photographs or samples to say whether it is there, so it is left in\n";
   if (indirect.worth) {
-    text += line("; residuals follow it with a slope of %.2f +- %.2f (asked for: over %.1f and %.0f sigma)", indirect.worth->slope, indirect.worth->sigma,
-                 IndirectWorth::kLeastSlope, IndirectWorth::kStandardErrors);
+    text += line("; residuals follow what is predicted with a slope of %.2f +- %.2f (asked for: over %.2f and %.0f sigma)", indirect.worth->slope,
+                 indirect.worth->sigma, IndirectWorth::kLeastSlope, IndirectWorth::kStandardErrors);
     if (!indirect.worth->enough()) return text + ", so it is left in\n";
   }
   text += line("; %.1f %% of what was photographed there was taken out; each round changed the samples there by", 100.0 * indirect.share);
@@ -289,7 +292,7 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
   command->add_option("SESSION", settings->session, "Session to fit: captured or imported")->required();
   command->add_option("--out", settings->out, "Folder of the model; a model that is there is replaced")->required();
   command->add_option("--quality", settings->quality,
-                      "draft: the mesh's normals, and light between surfaces left in; standard: normals where they pay, that light taken out; "
+                      "draft: the mesh's normals, and light between surfaces left in; standard: normals where they pay, that light taken out where the photographs show it; "
                       "reference: that light in up to four rounds, with materials learnt on 50,000 surface points instead of 2,000, fitted to all instead of 2,000, "
                       "and lobes as the samples ask for")
       ->capture_default_str();
@@ -308,15 +311,16 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
                       "Points of its own that each material is fitted to at the end (default: 2000, with --quality reference all)")
       ->check(CLI::Range(100, 10'000'000));
   command->add_option("--draw", settings->draw,
-                      "Which points the materials are learnt on and fitted to: 0, 1, 2, ...; what differs between draws is chance (see tradeoff --draws)")
+                      "Which points the materials are learnt on and fitted to: 0, 1, 2, ...; what differs between draws is chance (see tradeoff --draws). All the "
+                      "same where there are no more points than that")
       ->check(CLI::Range(0, 1'000'000));
   command->add_option("--normals", settings->normals,
                       "fitted: normals finer than the mesh's, from all photographs, and then everything once more on them; texel: the same, each texel by "
                       "its own samples alone, as in the paper; mesh: the mesh's own; auto: fitted where photographs left out for it are then predicted better (default: auto, with "
                       "--quality draft and --method paper mesh)");
   command->add_option("--interreflections", settings->interreflections,
-                      "auto: light between the object's own surfaces is predicted and taken out of the samples where it can matter; off "
-                      "(default: auto, with --quality draft and --method paper off)");
+                      "auto: light between the object's own surfaces is predicted where it can matter, and taken out of the samples if they show it; always: "
+                      "whether they show it or not; off (default: auto, with --quality draft and --method paper off)");
   command->add_option("--layout", settings->layout,
                       "photographs: an atlas whose texels are the pixels of each surface point's best photograph; mesh: the mesh's own "
                       "texture coordinates, kept as they are; auto: the mesh's if it has some that serve, else photographs")

@@ -57,7 +57,7 @@ std::string measurement_line(const Tradeoff& tradeoff, const TradeoffMeasurement
   const std::string name = formatted("%c %-19s", front ? '*' : ' ', m.setting.name.c_str());
   if (!m.measured()) return name + "not measured: " + m.failure + "\n";
   const auto gain = m.setting.name == kStandardSetting ? std::nullopt : gain_over_standard(tradeoff, m);
-  return name + formatted("%5zu %5s  %s  %7.4f %7.4f  %8.1f %7.1f %s", m.runs.front().fit_views, materials_found(m).c_str(), error_cell(m.clipped).c_str(), m.relative.value,
+  return name + formatted("%5zu %5s  %s  %7.4f %7.4f  %8.1f %7.1f %s", m.runs.front().fit_views, materials_text(m).c_str(), error_cell(m.clipped).c_str(), m.relative.value,
                           m.square_root.value, m.cpu_seconds, m.seconds, memory_cell(m.peak_bytes).c_str()) +
          gain_cells(gain) + "\n";
 }

@@ -58,7 +58,7 @@ TEST(ErrorSpread, SigmaIsTheScatterOfRepeatedExperiments) {
     scatter += error.value * error.value / kExperiments;
     claimed += error.sigma * error.sigma / kExperiments;
   }
-  // Both are means over 2,000 of what varies by its own size and more: 5 % is two of their standard errors.
+  // Both squares are means over 2,000 of what varies by its own size and more: 5 % of the root is three standard errors or so.
   EXPECT_NEAR(std::sqrt(claimed / scatter), 1.0, 0.05);
 }
 
@@ -79,8 +79,8 @@ TEST(TradeoffMeasurement, SumsUpItsDraws) {
   const TradeoffMeasurement measurement = summed_up({}, {first, second});
   EXPECT_NEAR(measurement.cpu_seconds, 15.0, kRounding);
   EXPECT_EQ(measurement.peak_bytes, 100);
-  EXPECT_EQ(materials_found(measurement), "17-20");
-  EXPECT_EQ(materials_found(summed_up({}, {first})), "20");
+  EXPECT_EQ(materials_text(measurement), "17-20");
+  EXPECT_EQ(materials_text(summed_up({}, {first})), "20");
   EXPECT_NEAR(measurement.clipped.value, 0.25, kRounding);
 }
 

@@ -38,7 +38,7 @@ function texelTable(renderer, x, y, stage) {
   const samples = fromHalf(data.samples[i]), material = materialRows(data, i, stage);
   rows += tableRow("samples", samples === 0 ? "0 (filled in)" : samples);
   if (data.normal_sigma) rows += tableRow("normal's sigma, deg", rounded(fromHalf(data.normal_sigma[i]) * 180 / Math.PI, 3));
-  if (data.indirect) rows += tableRow("light between surfaces", rounded(100 * fromHalf(data.indirect[i]), 2) + " %");
+  if (data.indirect && page.indirect_bounces !== 0) rows += tableRow("light between surfaces", rounded(100 * fromHalf(data.indirect[i]), 2) + " %");
   if (data.residual && samples > 0) rows += tableRow("residual, 1/sr rms", rounded(fromHalf(data.residual[i]), 3));
   return `<table>${rows}${material.rows}</table>${material.brdf}`;
 }

@@ -1,8 +1,7 @@
-#include "processing/fit/indirect_worth.h"
+#include "processing/fit/indirect_trial.h"
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "processing/brdf/ordered_sum.h"
 #include "processing/brdf/prepared_brdf.h"
@@ -12,19 +11,24 @@ namespace {
 
 constexpr std::size_t kFewestSamples = 4;  // of a lumitexel: with fewer, a factor and noise explain anything
 
-// Of one photograph, each sample over its variance.
+// Each sample over its variance.
 struct Sums {
   double residual_light = 0, light_light = 0;
+
+  Sums& operator+=(const Sums& other) {
+    residual_light += other.residual_light;
+    light_light += other.light_light;
+    return *this;
+  }
+  Sums without(const Sums& part) const { return {residual_light - part.residual_light, light_light - part.light_light}; }
+  double slope() const { return residual_light / light_light; }
 };
 
 struct SumsByView {
   std::vector<Sums> view;
   std::size_t samples = 0;
   SumsByView& operator+=(const SumsByView& other) {
-    for (std::size_t v = 0; v < view.size(); ++v) {
-      view[v].residual_light += other.view[v].residual_light;
-      view[v].light_light += other.view[v].light_light;
-    }
+    for (std::size_t v = 0; v < view.size(); ++v) view[v] += other.view[v];
     samples += other.samples;
     return *this;
   }
@@ -32,10 +36,10 @@ struct SumsByView {
 
 // One channel of one lumitexel, by sample.
 struct Channel {
-  std::vector<double> predicted, residual, light, weight;
+  std::vector<double> predicted, residual, light, light_variance, weight;
 
   void clear() {
-    for (auto* values : {&predicted, &residual, &light, &weight}) values->clear();
+    for (auto* values : {&predicted, &residual, &light, &light_variance, &weight}) values->clear();
   }
   // Without what a factor on the prediction explains.
   void leave_factor_out(std::vector<double>& values) const {
@@ -46,6 +50,17 @@ struct Channel {
     }
     if (!(own > 0.0)) return;
     for (std::size_t s = 0; s < values.size(); ++s) values[s] -= predicted[s] * both / own;
+  }
+  // Of what then remains of its scatter, summed over the samples as their squares are.
+  std::vector<double> remaining_scatter() const {
+    double own = 0.0;
+    for (std::size_t s = 0; s < weight.size(); ++s) own += weight[s] * predicted[s] * predicted[s];
+    std::vector<double> scatter;
+    for (std::size_t s = 0; s < weight.size(); ++s) {
+      const double leverage = own > 0.0 ? weight[s] * predicted[s] * predicted[s] / own : 0.0;
+      scatter.push_back(weight[s] * light_variance[s] * (1.0 - leverage));
+    }
+    return scatter;
   }
 };
 
@@ -59,7 +74,7 @@ class Regression {
 
   void add(std::size_t lumitexel, SumsByView& sums) const {
     const auto samples = before_.of(lumitexel);
-    if (samples.size() < kFewestSamples || !has_light(lumitexel)) return;
+    if (samples.size() < kFewestSamples || without_.of(lumitexel).size() != samples.size() || !has_light(lumitexel)) return;
     std::vector<ChannelValues> predicted;
     for (const Observation& sample : samples) predicted.push_back(prediction(lumitexel, sample.geometry));
     Channel channel;
@@ -67,10 +82,11 @@ class Regression {
       take(lumitexel, c, predicted, channel);
       channel.leave_factor_out(channel.residual);
       channel.leave_factor_out(channel.light);
+      const std::vector<double> scatter = channel.remaining_scatter();
       for (std::size_t s = 0; s < samples.size(); ++s) {
         Sums& sum = sums.view[before_.view[before_.first[lumitexel] + s]];
         sum.residual_light += channel.weight[s] * channel.residual[s] * channel.light[s];
-        sum.light_light += channel.weight[s] * channel.light[s] * channel.light[s];
+        sum.light_light += channel.weight[s] * channel.light[s] * channel.light[s] - scatter[s];
       }
     }
     sums.samples += samples.size();
@@ -112,6 +128,7 @@ class Regression {
       channel.predicted.push_back(predicted[s][c]);
       channel.residual.push_back(residual);
       channel.light.push_back(light(lumitexel, s, c));
+      channel.light_variance.push_back(static_cast<double>(without_.of(lumitexel)[s].variance[c] - samples[s].variance[c]));
       channel.weight.push_back((error_.freedom + 1.0) / (error_.freedom + residual * residual / variance) / variance);
     }
   }
@@ -123,34 +140,34 @@ class Regression {
   std::vector<std::vector<PreparedBrdf>> basis_;
 };
 
-// Photographs are what errs independently: a pose or a lamp that is off bends all samples of its own.
+// Photographs are what errs independently: a pose or a lamp that is off bends all samples of its own. Each is left out once (jackknife): one that
+// decides alone shows so, where deviations from a slope that it has drawn to itself would not.
 IndirectWorth worth_of(const SumsByView& sums) {
   Sums all;
-  double photographs = 0.0;
-  for (const Sums& view : sums.view) {
-    all.residual_light += view.residual_light;
-    all.light_light += view.light_light;
-    photographs += view.light_light > 0.0;
-  }
   IndirectWorth worth;
   worth.samples = sums.samples;
-  if (!(all.light_light > 0.0)) return worth;
-  worth.slope = all.residual_light / all.light_light;
-  if (photographs < 2.0) return worth;
-  double squares = 0.0;
   for (const Sums& view : sums.view) {
-    const double off = view.residual_light - worth.slope * view.light_light;
+    all += view;
+    worth.photographs += view.light_light != 0.0;
+  }
+  if (!(all.light_light > 0.0)) return worth;
+  worth.slope = all.slope();
+  if (worth.photographs < 2) return worth;
+  const auto count = static_cast<double>(worth.photographs);
+  double mean = 0.0, squares = 0.0;
+  for (const Sums& view : sums.view) mean += view.light_light != 0.0 ? all.without(view).slope() / count : 0.0;
+  for (const Sums& view : sums.view) {
+    const double off = view.light_light != 0.0 ? all.without(view).slope() - mean : 0.0;
     squares += off * off;
   }
-  worth.sigma = std::sqrt(squares * photographs / (photographs - 1.0)) / all.light_light;
+  worth.sigma = std::sqrt(squares * (count - 1.0) / count);
   return worth;
 }
 
 }  // namespace
 
-IndirectWorth indirect_worth(const Observations& before, const Observations& without, const Model& model, const std::vector<int>& label,
-                             const std::vector<TexelWeights>& weights, const ErrorModel& error) {
-  if (before.first != without.first) throw std::logic_error("indirect_worth: the samples with and without light between surfaces are not the same");
+IndirectWorth try_without_indirect(const Observations& before, const Observations& without, const Model& model, const std::vector<int>& label,
+                                   const std::vector<TexelWeights>& weights, const ErrorModel& error) {
   const Regression regression(before, without, model, label, weights, error);
   SumsByView zero;
   const auto last = std::max_element(before.view.begin(), before.view.end());
