@@ -85,7 +85,7 @@ double round_step(double range) {
   return 10.0 * decade;
 }
 
-// 1, 2, 5 times powers of ten that lie on the axis; where those would be fewer than four, equal round steps.
+// 1, 2, 5 times powers of ten that lie on the axis; where those would be fewer than three, equal round steps.
 std::vector<double> ticks_of(const Range& range) {
   std::vector<double> ticks;
   for (double decade = std::pow(10.0, std::floor(range.low)); decade <= range.most(); decade *= 10.0) {
@@ -93,7 +93,7 @@ std::vector<double> ticks_of(const Range& range) {
       if (digit * decade >= range.least() && digit * decade <= range.most()) ticks.push_back(digit * decade);
     }
   }
-  if (ticks.size() > 3) return ticks;
+  if (ticks.size() >= 3) return ticks;
   ticks.clear();
   const double step = round_step(range.most() - range.least());
   for (double k = std::ceil(range.least() / step); k * step <= range.most(); k += 1.0) ticks.push_back(k * step);
