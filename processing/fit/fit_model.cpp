@@ -134,7 +134,7 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
     timer.begin("light between surfaces");
     indirect.emplace(session, gathered.set, scene, model, options.interreflections);
     if (indirect->can_matter()) changed = take_out(*indirect, last_stage(model));
-    const bool put_back = changed && options.interreflections.ask && !is_shown();
+    const bool put_back = changed && !is_shown() && options.interreflections.ask;
     if (put_back) {
       indirect->put_back();
       model.indirect_bounces = 0;

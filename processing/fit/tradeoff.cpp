@@ -53,6 +53,17 @@ std::vector<HeldoutError> errors_of(const std::vector<TradeoffRun>& runs, Heldou
   return errors;
 }
 
+// Draw after draw, of each all settings; what the journal has of them.
+std::vector<std::optional<TradeoffRun>> known_runs(const std::vector<TradeoffSetting>& settings, int draws, const TradeoffJournal* journal) {
+  std::vector<std::optional<TradeoffRun>> known;
+  for (int draw = 0; draw < draws; ++draw) {
+    for (const TradeoffSetting& setting : settings) {
+      known.push_back(journal != nullptr ? journal->known(with_draw(setting, draw)) : std::nullopt);
+    }
+  }
+  return known;
+}
+
 bool comparable(const TradeoffMeasurement& m) { return m.measured() && std::isfinite(m.clipped.value); }
 
 bool dominates(const TradeoffMeasurement& a, const TradeoffMeasurement& b) {
@@ -95,21 +106,25 @@ Tradeoff measure_tradeoff(const CalibratedSession& session, const std::vector<Tr
   }
   const CalibratedSession heldout = heldout_part(session);
   progress.begin("fits and comparisons", kWhole_percent, "%");
-  const std::size_t all = settings.size() * static_cast<std::size_t>(draws);
+  const std::vector<std::optional<TradeoffRun>> known = known_runs(settings, draws, journal);
+  const auto wanted = static_cast<std::size_t>(std::count_if(known.begin(), known.end(), [](const auto& run) { return !run.has_value(); }));
+  tradeoff.known_before = known.size() - wanted;
   std::vector<std::vector<TradeoffRun>> runs(settings.size());
+  std::size_t made = 0;
   // Draw after draw, so that whoever stops early and goes on with fewer draws has all settings.
-  for (std::size_t done = 0; done < all; ++done) {
-    const std::size_t k = done % settings.size();
-    if (!runs[k].empty() && !runs[k].back().measured()) continue;  // as it would again
-    const TradeoffSetting setting = with_draw(settings[k], static_cast<int>(done / settings.size()));
-    std::optional<TradeoffRun> run = journal != nullptr ? journal->known(setting) : std::nullopt;
-    if (!run) {
-      SettingProgress part(progress, done, all, stages_of(setting.options));
-      run = run_setting(session, heldout, setting, part);
-      if (journal != nullptr) journal->keep(setting, *run);
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const std::size_t k = i % settings.size();
+    if (known[i]) {
+      runs[k].push_back(*known[i]);
+      continue;
     }
-    runs[k].push_back(*run);
-    progress.update(kWhole_percent * static_cast<std::int64_t>(done + 1) / static_cast<std::int64_t>(all));
+    if (runs[k].empty() || runs[k].back().measured()) {  // else it would fail again
+      const TradeoffSetting setting = with_draw(settings[k], static_cast<int>(i / settings.size()));
+      SettingProgress part(progress, made, wanted, stages_of(setting.options));
+      runs[k].push_back(run_setting(session, heldout, setting, part));
+      if (journal != nullptr) journal->keep(setting, runs[k].back());
+    }
+    progress.update(kWhole_percent * static_cast<std::int64_t>(++made) / static_cast<std::int64_t>(wanted));
   }
   progress.update(kWhole_percent);
   for (std::size_t k = 0; k < settings.size(); ++k) tradeoff.measurements.push_back(summed_up(settings[k], runs[k]));

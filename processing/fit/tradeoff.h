@@ -53,6 +53,7 @@ struct Tradeoff {
   std::string session_key;
   std::size_t fit_views = 0, heldout_views = 0;
   int draws = 1;
+  std::size_t known_before = 0;  // runs that the journal had
   std::vector<TradeoffMeasurement> measurements;  // in the order of the settings
 };
 

@@ -64,8 +64,7 @@ Json setting_json(const TradeoffSetting& setting) {
           {"family", options.family ? to_string(*options.family) : "auto"},
           {"lobe_shapes", to_string(options.lobe_shapes)},
           {"normals", to_string(options.normals)},
-          {"interreflections", options.interreflections.wanted},
-          {"interreflections_asked_for", options.interreflections.ask},
+          {"interreflections", !options.interreflections.wanted ? "off" : options.interreflections.ask ? "auto" : "always"},
           {"interreflection_rounds", options.interreflections.rounds},
           {"errors", to_string(options.errors)},
           {"most_lobes", options.most_lobes},
@@ -124,6 +123,7 @@ std::string tradeoff_json(const Tradeoff& tradeoff) {
                          {"fit_views", tradeoff.fit_views},
                          {"heldout_views", tradeoff.heldout_views},
                          {"draws", tradeoff.draws},
+                         {"fits_known_before", tradeoff.known_before},
                          {"settings", settings}};
   return document.dump(2);
 }

@@ -219,12 +219,15 @@ std::string indirect_line(const FitSummary& summary) {
   std::string text = line("light between surfaces: can matter on %.1f %% of the surface (estimated to be at most %.3f of a lamp's)",
                           100.0 * static_cast<double>(indirect.concerned) / static_cast<double>(summary.lumitexels), indirect.largest_bound);
   if (indirect.change.empty()) return text + ", so nobody followed it\n";
-  if (indirect.worth && !indirect.worth->judged()) return text + "; too few photographs or samples to say whether it is there, so it is left in\n";
-  if (indirect.worth) {
+  const bool shown = indirect.worth && indirect.worth->enough(), left_in = !shown && indirect.share == 0.0;
+  if (indirect.worth && !indirect.worth->judged()) {
+    text += "; too few photographs, or too little of it, to say whether it is there";
+  } else if (indirect.worth) {
     text += line("; residuals follow what is predicted with a slope of %.2f +- %.2f (asked for: over %.2f and %.0f sigma)", indirect.worth->slope,
                  indirect.worth->sigma, IndirectWorth::kLeastSlope, IndirectWorth::kStandardErrors);
-    if (!indirect.worth->enough()) return text + ", so it is left in\n";
   }
+  if (left_in) return text + ", so it is left in\n";
+  if (!shown) text += ", but to be taken out always";
   text += line("; %.1f %% of what was photographed there was taken out; each round changed the samples there by", 100.0 * indirect.share);
   for (const double change : indirect.change) text += line(" %.2f %%", 100.0 * change);
   return text + "\n";

@@ -7,6 +7,7 @@
 #include <optional>
 #include <thread>
 
+#include "drivers/error.h"
 #include "processing/calibration/calibrated_session.h"
 #include "processing/fit/tradeoff.h"
 #include "processing/fit/tradeoff_journal.h"
@@ -63,8 +64,10 @@ std::string measurement_line(const Tradeoff& tradeoff, const TradeoffMeasurement
 }
 
 std::string tradeoff_text(const Tradeoff& tradeoff) {
-  std::string text = formatted("Errors on %zu photographs that no fit saw; %zu more for fitting; each setting fitted %d time%s\n", tradeoff.heldout_views,
-                               tradeoff.fit_views, tradeoff.draws, tradeoff.draws == 1 ? "" : "s");
+  std::string text = formatted("Errors on %zu photograph%s that no fit saw; %zu more for fitting; each setting fitted %d time%s\n", tradeoff.heldout_views,
+                               tradeoff.heldout_views == 1 ? "" : "s", tradeoff.fit_views, tradeoff.draws, tradeoff.draws == 1 ? "" : "s");
+  if (tradeoff.known_before > 0) text += formatted("%zu of the fits were known from an earlier run\n", tradeoff.known_before);
+  if (tradeoff.heldout_views == 1) text += "One photograph cannot tell how sure these errors are: no +-, and any order of settings may be chance\n";
   text += "                                  clipped error     one                        CPU                   gain over             gain\n"
           "  setting            views  mat.                    draw   relative    sqrt   seconds seconds peak MB  standard         per CPU s\n";
   const std::vector<bool> front = pareto_front(tradeoff.measurements);
@@ -115,6 +118,9 @@ std::string program_and_machine() {
 CommandResult tradeoff_command(const TradeoffArguments& arguments, CommandContext& context) {
   std::optional<int> materials;
   if (!arguments.materials.empty()) materials = materials_wanted("--materials", arguments.materials);
+  if (!arguments.page.empty() && !fs::is_directory(fs::absolute(arguments.page).parent_path())) {
+    throw BadInput("--page", arguments.page + " is in a folder that does not exist", "a file in a folder that does: it is written when all is measured");
+  }
   const auto settings = tradeoff_settings(materials, arguments.full, arguments.only);
   const SessionStore store = session_given("SESSION", arguments.session);
   const CalibratedSession session = calibrate_session(store, context.progress);

@@ -102,6 +102,11 @@ TEST(Tradeoff, FitsEachSettingWithEachDraw) {
       EXPECT_EQ(journal.known(settings[k])->clipped.pooled, m.runs[static_cast<std::size_t>(draw)].clipped.pooled);
     }
   }
+  for (TradeoffSetting& setting : settings) setting.options.draw = 0;
+  const Tradeoff again = measure_tradeoff(small_session(folder), settings, 2, &journal, progress);
+  EXPECT_EQ(tradeoff.known_before, 0u);
+  EXPECT_EQ(again.known_before, 4u);
+  EXPECT_EQ(again.measurements[1].clipped.value, tradeoff.measurements[1].clipped.value);
   const auto json = nlohmann::json::parse(tradeoff_json(tradeoff));
   EXPECT_EQ(json.at("settings").at(0).at("measured").at("draws").size(), 2u);
   EXPECT_TRUE(json.at("settings").at(0).at("against_standard").is_null());
