@@ -28,4 +28,14 @@ ChannelValues PreparedBrdf::value(const LobeGeometry& geometry) const {
   return values;
 }
 
+ChannelValues predicted_reflectance(const std::vector<PreparedBrdf>& basis, const std::vector<float>& weight, const LobeGeometry& geometry) {
+  ChannelValues sum{};
+  for (std::size_t k = 0; k < weight.size(); ++k) {
+    if (weight[k] == 0.0f) continue;
+    const ChannelValues values = predicted_reflectance(basis[k], geometry);
+    for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += static_cast<double>(weight[k]) * values[c];
+  }
+  return sum;
+}
+
 }  // namespace lumitexel

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "processing/brdf/lobe_family.h"
 
@@ -35,5 +36,8 @@ inline ChannelValues predicted_reflectance(const PreparedBrdf& brdf, const LobeG
   for (double& value : values) value *= geometry.cos_i;
   return values;
 }
+
+// The same of a mixture: what a texel with these weights of a basis reflects. Weights of zero are not evaluated.
+ChannelValues predicted_reflectance(const std::vector<PreparedBrdf>& basis, const std::vector<float>& weight, const LobeGeometry& geometry);
 
 }  // namespace lumitexel

@@ -130,19 +130,18 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
     return indirect_worth->enough();
   };
   bool changed = false;
-  if (options.interreflections.wanted) {
+  if (options.interreflections.choice != InterreflectionChoice::Off) {
     timer.begin("light between surfaces");
     indirect.emplace(session, gathered.set, scene, model, options.interreflections);
     if (indirect->can_matter()) changed = take_out(*indirect, last_stage(model));
-    const bool put_back = changed && !is_shown() && options.interreflections.ask;
+    const bool put_back = changed && !is_shown() && options.interreflections.choice == InterreflectionChoice::Auto;
     if (put_back) {
       indirect->put_back();
       model.indirect_bounces = 0;
-    }
-    if (changed) {
+    } else if (changed) {
       indirect->even_out_variance();
-      look();
     }
+    if (changed) look();
     changed = changed && !put_back;
   }
   if (auto normals = seek_normals(session, inputs, reflectance.clustering, model, summary, timer, progress)) {

@@ -16,12 +16,21 @@ const char* to_string(NormalChoice choice) {
   return "auto";
 }
 
+const char* to_string(InterreflectionChoice choice) {
+  switch (choice) {
+    case InterreflectionChoice::Always: return "always";
+    case InterreflectionChoice::Off: return "off";
+    case InterreflectionChoice::Auto: break;
+  }
+  return "auto";
+}
+
 FitOptions FitOptions::preset(const std::string& quality) {
   FitOptions options;
   options.quality = quality;
   if (quality == "draft") {
     options.normals = NormalChoice::Mesh;
-    options.interreflections.wanted = false;
+    options.interreflections.choice = InterreflectionChoice::Off;
   } else if (quality == "reference") {
     options.learning_lumitexels = 50000;  // where there are twice as many, the others judge choices
     options.final_lumitexels = std::numeric_limits<std::size_t>::max() / 2;
@@ -43,7 +52,7 @@ FitOptions as_published(FitOptions options) {
   options.most_lobes = 1;
   options.lobe_shapes = LobeShapes::Separate;
   options.normals = NormalChoice::Mesh;
-  options.interreflections.wanted = false;
+  options.interreflections.choice = InterreflectionChoice::Off;
   options.plain_projection = options.principal_functions = true;
   return options;
 }

@@ -22,10 +22,14 @@ enum class FitMethod {
 enum class NormalChoice { Auto, Fitted, Texel, Mesh };
 const char* to_string(NormalChoice choice);  // "auto", "fitted", "texel", "mesh"
 
-// Whether light between the object's surfaces is sought (interreflection_stage.h), and how.
+// Auto: light between the object's surfaces is taken out where it can matter and the photographs show it (indirect_worth.h). Always: where it can
+// matter, without being asked for. Off: left in.
+enum class InterreflectionChoice { Auto, Always, Off };
+const char* to_string(InterreflectionChoice choice);  // "auto", "always", "off"
+
+// How it is sought (interreflection_stage.h).
 struct InterreflectionOptions {
-  bool wanted = true;
-  bool ask = true;  // whether the photographs show it (indirect_worth.h); false: taken out wherever it can matter
+  InterreflectionChoice choice = InterreflectionChoice::Auto;
   int rounds = 1;  // at most, and at least 1; the first costs no fit of its own where normals are fitted after it
   IndirectOptions light;
 };

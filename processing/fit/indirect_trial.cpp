@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "processing/brdf/ordered_sum.h"
 #include "processing/brdf/prepared_brdf.h"
@@ -41,26 +42,24 @@ struct Channel {
   void clear() {
     for (auto* values : {&predicted, &residual, &light, &light_variance, &weight}) values->clear();
   }
-  // Without what a factor on the prediction explains.
-  void leave_factor_out(std::vector<double>& values) const {
-    double both = 0.0, own = 0.0;
-    for (std::size_t s = 0; s < values.size(); ++s) {
-      both += weight[s] * predicted[s] * values[s];
-      own += weight[s] * predicted[s] * predicted[s];
-    }
-    if (!(own > 0.0)) return;
-    for (std::size_t s = 0; s < values.size(); ++s) values[s] -= predicted[s] * both / own;
+  // Of the prediction with itself.
+  double own() const {
+    double sum = 0.0;
+    for (std::size_t s = 0; s < weight.size(); ++s) sum += weight[s] * predicted[s] * predicted[s];
+    return sum;
   }
-  // Of what then remains of its scatter, summed over the samples as their squares are.
-  std::vector<double> remaining_scatter() const {
-    double own = 0.0;
-    for (std::size_t s = 0; s < weight.size(); ++s) own += weight[s] * predicted[s] * predicted[s];
-    std::vector<double> scatter;
-    for (std::size_t s = 0; s < weight.size(); ++s) {
-      const double leverage = own > 0.0 ? weight[s] * predicted[s] * predicted[s] / own : 0.0;
-      scatter.push_back(weight[s] * light_variance[s] * (1.0 - leverage));
-    }
-    return scatter;
+  // Without what a factor on the prediction explains; nothing is where it is zero.
+  void leave_factor_out(std::vector<double>& values) const {
+    double both = 0.0;
+    for (std::size_t s = 0; s < values.size(); ++s) both += weight[s] * predicted[s] * values[s];
+    if (both == 0.0) return;
+    const double factor = both / own();
+    for (std::size_t s = 0; s < values.size(); ++s) values[s] -= predicted[s] * factor;
+  }
+  // By how much paths' scatter adds to the square of a sample's light once that factor is out, over its variance.
+  double remaining_scatter(std::size_t s, double own_sum) const {
+    const double leverage = own_sum > 0.0 ? weight[s] * predicted[s] * predicted[s] / own_sum : 0.0;
+    return weight[s] * light_variance[s] * (1.0 - leverage);
   }
 };
 
@@ -76,17 +75,18 @@ class Regression {
     const auto samples = before_.of(lumitexel);
     if (samples.size() < kFewestSamples || without_.of(lumitexel).size() != samples.size() || !has_light(lumitexel)) return;
     std::vector<ChannelValues> predicted;
-    for (const Observation& sample : samples) predicted.push_back(prediction(lumitexel, sample.geometry));
+    const std::vector<PreparedBrdf>& basis = basis_[static_cast<std::size_t>(label_[lumitexel])];
+    for (const Observation& sample : samples) predicted.push_back(predicted_reflectance(basis, weights_[lumitexel].weight, sample.geometry));
     Channel channel;
     for (std::size_t c = 0; c < static_cast<std::size_t>(before_.channels); ++c) {
       take(lumitexel, c, predicted, channel);
       channel.leave_factor_out(channel.residual);
       channel.leave_factor_out(channel.light);
-      const std::vector<double> scatter = channel.remaining_scatter();
+      const double own = channel.own();
       for (std::size_t s = 0; s < samples.size(); ++s) {
         Sums& sum = sums.view[before_.view[before_.first[lumitexel] + s]];
         sum.residual_light += channel.weight[s] * channel.residual[s] * channel.light[s];
-        sum.light_light += channel.weight[s] * channel.light[s] * channel.light[s] - scatter[s];
+        sum.light_light += channel.weight[s] * channel.light[s] * channel.light[s] - channel.remaining_scatter(s, own);
       }
     }
     sums.samples += samples.size();
@@ -104,18 +104,6 @@ class Regression {
       }
     }
     return false;
-  }
-
-  ChannelValues prediction(std::size_t lumitexel, const LobeGeometry& geometry) const {
-    const auto& basis = basis_[static_cast<std::size_t>(label_[lumitexel])];
-    ChannelValues sum{};
-    for (std::size_t k = 0; k < basis.size(); ++k) {
-      const auto weight = static_cast<double>(weights_[lumitexel].weight[k]);
-      if (!(weight > 0.0)) continue;
-      const ChannelValues value = predicted_reflectance(basis[k], geometry);
-      for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += weight * value[c];
-    }
-    return sum;
   }
 
   // Weights as Student's t has it: a shadow that the mesh misses must not decide.
@@ -143,23 +131,20 @@ class Regression {
 // Photographs are what errs independently: a pose or a lamp that is off bends all samples of its own. Each is left out once (jackknife): one that
 // decides alone shows so, where deviations from a slope that it has drawn to itself would not.
 IndirectWorth worth_of(const SumsByView& sums) {
+  std::vector<Sums> photographs;
+  std::copy_if(sums.view.begin(), sums.view.end(), std::back_inserter(photographs), [](const Sums& view) { return view.light_light != 0.0; });
   Sums all;
+  for (const Sums& one : photographs) all += one;
   IndirectWorth worth;
   worth.samples = sums.samples;
-  for (const Sums& view : sums.view) {
-    all += view;
-    worth.photographs += view.light_light != 0.0;
-  }
+  worth.photographs = photographs.size();
   if (!(all.light_light > 0.0)) return worth;
   worth.slope = all.slope();
-  if (worth.photographs < 2) return worth;
-  const auto count = static_cast<double>(worth.photographs);
+  if (photographs.size() < 2) return worth;
+  const auto count = static_cast<double>(photographs.size());
   double mean = 0.0, squares = 0.0;
-  for (const Sums& view : sums.view) mean += view.light_light != 0.0 ? all.without(view).slope() / count : 0.0;
-  for (const Sums& view : sums.view) {
-    const double off = view.light_light != 0.0 ? all.without(view).slope() - mean : 0.0;
-    squares += off * off;
-  }
+  for (const Sums& one : photographs) mean += all.without(one).slope() / count;
+  for (const Sums& one : photographs) squares += std::pow(all.without(one).slope() - mean, 2);
   worth.sigma = std::sqrt(squares * (count - 1.0) / count);
   return worth;
 }

@@ -66,12 +66,7 @@ class Arm {
     ChannelValues predicted{};
     const std::vector<float>& weight = reflectance_.weights[lumitexel].weight;
     const std::vector<PreparedBrdf>& basis = prepared_[static_cast<std::size_t>(reflectance_.clustering.label[lumitexel])];
-    if (geometry.cos_i > 0.0 && geometry.cos_o > 0.0) {
-      for (std::size_t k = 0; k < weight.size(); ++k) {
-        const ChannelValues value = predicted_reflectance(basis[k], geometry);
-        for (std::size_t c = 0; c < channels; ++c) predicted[c] += static_cast<double>(weight[k]) * value[c];
-      }
-    }
+    if (geometry.cos_i > 0.0 && geometry.cos_o > 0.0) predicted = predicted_reflectance(basis, weight, geometry);
     Observation sample;
     for (std::size_t c = 0; c < channels; ++c) {
       sample.reflectance[c] = tile.reflectance[s * channels + c];

@@ -115,7 +115,7 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
                        {"most_lobes", options.most_lobes},
                        {"principal_functions", options.principal_functions},
                        {"normals", to_string(options.normals)},
-                       {"interreflections", !options.interreflections.wanted ? "off" : options.interreflections.ask ? "auto" : "always"},
+                       {"interreflections", to_string(options.interreflections.choice)},
                        {"intensity_weight", options.method == FitMethod::Paper ? json(options.intensity_weight) : json(nullptr)},
                        {"materials", options.materials},
                        {"layout", to_string(options.layout.choice)},

@@ -64,7 +64,7 @@ Json setting_json(const TradeoffSetting& setting) {
           {"family", options.family ? to_string(*options.family) : "auto"},
           {"lobe_shapes", to_string(options.lobe_shapes)},
           {"normals", to_string(options.normals)},
-          {"interreflections", !options.interreflections.wanted ? "off" : options.interreflections.ask ? "auto" : "always"},
+          {"interreflections", to_string(options.interreflections.choice)},
           {"interreflection_rounds", options.interreflections.rounds},
           {"errors", to_string(options.errors)},
           {"most_lobes", options.most_lobes},

@@ -46,7 +46,7 @@ void take_errors(const Evaluation& evaluation, TradeoffRun& run) {
 // and weights again.
 int stages_of(const FitOptions& options) {
   int stages = options.principal_functions ? 7 : 5;
-  if (options.interreflections.wanted) stages += options.interreflections.rounds;
+  if (options.interreflections.choice != InterreflectionChoice::Off) stages += options.interreflections.rounds;
   if (options.normals == NormalChoice::Auto) ++stages;
   if (options.normals != NormalChoice::Mesh) stages += 3;
   return stages;

@@ -46,7 +46,7 @@ std::vector<TradeoffSetting> all_settings(std::optional<int> materials) {
   add("bases-8", "and other materials, asked for or not").options.bases = kMaxBasis;
   add("float", "weights of texels from values in float").options.precision = Precision::Float;
   add("normals-mesh", "the mesh's normals, nothing fitted").options.normals = NormalChoice::Mesh;
-  add("direct", "light between surfaces left in").options.interreflections.wanted = false;
+  add("direct", "light between surfaces left in").options.interreflections.choice = InterreflectionChoice::Off;
   FitOptions& paper = add(kPaperSetting, "clustering, fits and projection as published").options;
   paper = as_published(paper);
   for (const std::size_t views : {16u, 12u, 8u}) {

@@ -1,5 +1,3 @@
-#include <unistd.h>
-
 #include <filesystem>
 #include <memory>
 #include <sstream>
@@ -9,6 +7,7 @@
 #include "rig/commission/measured_rig.h"
 #include "rig/console/command.h"
 #include "rig/console/commission_page.h"
+#include "rig/console/output_file.h"
 #include "rig/console/rig_backend.h"
 #include "rig/rig_file.h"
 #include "rig/whole_file.h"
@@ -126,10 +125,7 @@ std::string base_for(const fs::path& rig, const fs::path& out) {
 void require_new_file(const std::string& option, const fs::path& file) {
   if (file.empty()) return;
   if (fs::exists(file)) throw BadInput(option, file.string() + " is there already", "a new file's name");
-  const fs::path folder = fs::absolute(file).parent_path();
-  if (!fs::is_directory(folder) || access(folder.c_str(), W_OK) != 0) {
-    throw BadInput(option, folder.string() + " is no folder that can be written to", "a file in a folder that is there");
-  }
+  require_writable_folder(option, file);
 }
 
 CommandResult run(const CommissionOptions& options, CommandContext& context) {

@@ -11,6 +11,7 @@
 #include "rig/console/experiment_page.h"
 #include "rig/console/materials_option.h"
 #include "rig/console/named_value.h"
+#include "rig/console/output_file.h"
 #include "rig/whole_file.h"
 
 namespace lumitexel {
@@ -108,6 +109,7 @@ constexpr const char* kTableFoot =
 CommandResult experiment_command(const ExperimentSettings& settings, CommandContext& context) {
   std::vector<ExperimentRow> rows = chosen_rows(settings.only);
   const Way way = chosen_way(settings);
+  require_writable_folder("--page", settings.page);
   CommandResult result;
   result.json = nlohmann::json::array();
   result.text = kTableHead;

@@ -46,6 +46,9 @@ Words<ErrorSource> error_words() {
 }
 
 Words<NormalChoice> normal_words() { return words_by_to_string(std::vector{NormalChoice::Auto, NormalChoice::Fitted, NormalChoice::Texel, NormalChoice::Mesh}); }
+Words<InterreflectionChoice> interreflection_words() {
+  return words_by_to_string(std::vector{InterreflectionChoice::Auto, InterreflectionChoice::Always, InterreflectionChoice::Off});
+}
 Words<LayoutChoice> layout_words() {
   return words_by_to_string(std::vector{LayoutChoice::Auto, LayoutChoice::Photographs, LayoutChoice::Mesh});
 }
@@ -78,9 +81,7 @@ FitOptions fit_options(const FitSettings& settings) {
   if (!settings.lobe_shapes.empty()) options.lobe_shapes = named_value("--lobe-shapes", settings.lobe_shapes, shape_words());
   if (!settings.normals.empty()) options.normals = named_value("--normals", settings.normals, normal_words());
   if (!settings.interreflections.empty()) {
-    const std::string& word = settings.interreflections;
-    options.interreflections.wanted = named_value<bool>("--interreflections", word, {{"auto", true}, {"always", true}, {"off", false}});
-    options.interreflections.ask = word == "auto";
+    options.interreflections.choice = named_value("--interreflections", settings.interreflections, interreflection_words());
   }
   if (settings.learning_points) options.learning_lumitexels = *settings.learning_points;
   if (settings.final_points) options.final_lumitexels = *settings.final_points;
@@ -219,10 +220,11 @@ std::string indirect_line(const FitSummary& summary) {
   std::string text = line("light between surfaces: can matter on %.1f %% of the surface (estimated to be at most %.3f of a lamp's)",
                           100.0 * static_cast<double>(indirect.concerned) / static_cast<double>(summary.lumitexels), indirect.largest_bound);
   if (indirect.change.empty()) return text + ", so nobody followed it\n";
-  const bool shown = indirect.worth && indirect.worth->enough(), left_in = !shown && indirect.share == 0.0;
-  if (indirect.worth && !indirect.worth->judged()) {
+  if (!indirect.worth) return text + "; what was found is too little to change anything, so it is left in\n";
+  const bool shown = indirect.worth->enough(), left_in = !shown && indirect.share == 0.0;
+  if (!indirect.worth->judged()) {
     text += "; too few photographs, or too little of it, to say whether it is there";
-  } else if (indirect.worth) {
+  } else {
     text += line("; residuals follow what is predicted with a slope of %.2f +- %.2f (asked for: over %.2f and %.0f sigma)", indirect.worth->slope,
                  indirect.worth->sigma, IndirectWorth::kLeastSlope, IndirectWorth::kStandardErrors);
   }

@@ -7,7 +7,6 @@
 #include <optional>
 #include <thread>
 
-#include "drivers/error.h"
 #include "processing/calibration/calibrated_session.h"
 #include "processing/fit/tradeoff.h"
 #include "processing/fit/tradeoff_journal.h"
@@ -15,6 +14,7 @@
 #include "rig/console/command.h"
 #include "rig/console/input_folder.h"
 #include "rig/console/materials_option.h"
+#include "rig/console/output_file.h"
 #include "rig/sha256.h"
 #include "rig/whole_file.h"
 
@@ -118,9 +118,7 @@ std::string program_and_machine() {
 CommandResult tradeoff_command(const TradeoffArguments& arguments, CommandContext& context) {
   std::optional<int> materials;
   if (!arguments.materials.empty()) materials = materials_wanted("--materials", arguments.materials);
-  if (!arguments.page.empty() && !fs::is_directory(fs::absolute(arguments.page).parent_path())) {
-    throw BadInput("--page", arguments.page + " is in a folder that does not exist", "a file in a folder that does: it is written when all is measured");
-  }
+  require_writable_folder("--page", arguments.page);
   const auto settings = tradeoff_settings(materials, arguments.full, arguments.only);
   const SessionStore store = session_given("SESSION", arguments.session);
   const CalibratedSession session = calibrate_session(store, context.progress);

@@ -235,7 +235,7 @@ int parse_and_run(int argc, char** argv) {
   options.fit = FitOptions::preset(quality);
   options.fit.materials = materials;
   options.fit.normals = NormalChoice::Mesh;
-  options.fit.interreflections.wanted = false;  // the simulated rig has no light between surfaces
+  options.fit.interreflections.choice = InterreflectionChoice::Off;  // the simulated rig has no light between surfaces
   for (const std::string& line : simulation) options.capture.simulation_toml += line + '\n';
   for (const std::string& name : only) options.steps.push_back(calibration_step_from_string(name));
   if (only.empty()) options.steps = all_calibration_steps();

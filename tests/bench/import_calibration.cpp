@@ -206,7 +206,7 @@ int main(int argc, char** argv) {
   options.fit = lumitexel::FitOptions::preset(quality);
   options.fit.materials = materials;
   if (plain) options.fit.normals = lumitexel::NormalChoice::Mesh;
-  options.fit.interreflections.wanted = !plain;
+  if (plain) options.fit.interreflections.choice = lumitexel::InterreflectionChoice::Off;
   options.with_fits = !no_fits;
   return lumitexel::run(options, shifts_mm, turns_deg, focal, seeds);
 }

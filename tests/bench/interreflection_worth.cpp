@@ -81,12 +81,12 @@ int main(int argc, char** argv) {
   const CalibratedSession session = calibrate_session(SessionStore::open(settings.session, OpenMode::ReadOnly), quiet);
   FitOptions options = settings.options();
   options.interreflections.light.bounces = bounces;
-  options.interreflections.ask = false;  // the question is what it does
+  options.interreflections.choice = InterreflectionChoice::Always;  // the question is what it does
   std::printf("%s\n%s, %s quality, %d materials, %d lobes; held-out photographs, relative / clipped / roots\n", machine_line().c_str(),
               settings.session.c_str(), settings.quality.c_str(), options.materials, options.most_lobes);
   std::printf("%-28s   %-17s   %-17s   %-17s   %s\n", "share of itself faced", "under 0.05", "0.05 to 0.2", "0.2 and more", "all");
   FitOptions without = options;
-  without.interreflections.wanted = false;
+  without.interreflections.choice = InterreflectionChoice::Off;
   Model plain = fit_model(session, without, StageTimer(), quiet).model;
   print("left in", session, plain);
   plain.indirect_bounces = bounces;

@@ -66,7 +66,7 @@ TEST(Usage, AWrongValueIsAnsweredWithItsOptionAndTheRightOnes) {
   expect_refused("calibrate S --without lens,x", {"--without: 'x'"});
   expect_refused("render M --session S --view v --out x.exr --aov depth", {"--aov: 'depth'", "normal", "sigma"});
   expect_refused("tradeoff S --only x", {"--only: 'x'", "views-16"});
-  expect_refused("tradeoff S --page nowhere/p.html", {"--page", "nowhere/p.html", "does not exist"});
+  expect_refused("tradeoff S --page nowhere/p.html", {"--page", "nowhere", "no folder"});
   expect_refused("fit S --out M --interreflections x", {"--interreflections: 'x'", "auto, always or off"});
   expect_refused("tradeoff S --materials many", {"--materials: 'many'", "or auto"});
   expect_refused("tradeoff S --materials auto --only paper", {"--materials"});

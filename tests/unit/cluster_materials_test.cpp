@@ -5,8 +5,8 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
-#include <iterator>
 #include <cmath>
+#include <iterator>
 
 #include "processing/brdf/misfit.h"
 #include "processing/brdf/select_lumitexels.h"

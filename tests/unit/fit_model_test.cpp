@@ -95,11 +95,11 @@ TEST(FitPresets, GoFromQuickToThoroughAndThePapersMethodTakesNothingFromThem) {
   const FitOptions draft = FitOptions::preset("draft"), standard = FitOptions::preset("standard"), reference = FitOptions::preset("reference");
   EXPECT_EQ(standard.most_lobes, 2);
   EXPECT_EQ(standard.materials, 0);
-  EXPECT_FALSE(draft.interreflections.wanted);
+  EXPECT_EQ(draft.interreflections.choice, InterreflectionChoice::Off);
   EXPECT_EQ(draft.normals, NormalChoice::Mesh);
   EXPECT_EQ(draft.errors, ErrorSource::Auto);  // given ones are less exact with few photographs
   EXPECT_EQ(standard.normals, NormalChoice::Auto);
-  EXPECT_TRUE(standard.interreflections.wanted);
+  EXPECT_EQ(standard.interreflections.choice, InterreflectionChoice::Auto);
   EXPECT_GT(reference.interreflections.rounds, standard.interreflections.rounds);
   EXPECT_GT(reference.learning_lumitexels, standard.learning_lumitexels);
   EXPECT_FALSE(reference.family.has_value());
@@ -110,7 +110,7 @@ TEST(FitPresets, GoFromQuickToThoroughAndThePapersMethodTakesNothingFromThem) {
     EXPECT_EQ(paper.materials, kMaterialsOfThePaper);
     EXPECT_EQ(paper.lobe_shapes, LobeShapes::Separate);
     EXPECT_EQ(paper.normals, NormalChoice::Mesh);
-    EXPECT_FALSE(paper.interreflections.wanted);
+    EXPECT_EQ(paper.interreflections.choice, InterreflectionChoice::Off);
   }
   EXPECT_BAD_INPUT(FitOptions::preset("best"), "--quality", "best");
 }

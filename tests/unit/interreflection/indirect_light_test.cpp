@@ -121,6 +121,30 @@ TEST(IndirectRemoval, TheTrueAlbedoIsFoundWithinTheRoundsOfThePresets) {
   EXPECT_NEAR(albedo_after(4), kAlbedo, 0.01 * kAlbedo);
 }
 
+// The bowl's samples as those of one lumitexel. All of them see the same bowl: their scatter is made to differ, as that of few paths does.
+TEST(IndirectRemoval, ALumitexelsSamplesGetTheMeanOfTheirScatter) {
+  const CalibratedSession session = bowl_session();
+  LumitexelSet lumitexels = bowl_lumitexels(kAlbedo, 1);
+  LumitexelTile& tile = lumitexels.tiles[0];
+  const auto samples = static_cast<std::uint32_t>(tile.samples());
+  tile.position.resize(1);
+  tile.normal.resize(1);
+  tile.texel.resize(1);
+  tile.first_sample = {0, samples};
+  for (std::size_t k = 0; k < tile.variance.size(); ++k) tile.variance[k] = k / 3 % 2 == 0 ? 0.001f : 0.002f;  // measured: stays each sample's own
+  const std::vector<float> measured = tile.variance;
+  IndirectRemoval removal(session, lumitexels, RayScene(session.mesh), bowl_model(kAlbedo), {});
+  ASSERT_TRUE(removal.remove(bowl_model(kAlbedo), FitStage::Projection));
+  for (std::size_t k = 0; k < tile.variance.size(); ++k) tile.variance[k] += 0.0001f * static_cast<float>(k / 3 % 5);
+  const std::vector<float> own = tile.variance;
+  removal.even_out_variance();
+  for (std::size_t c = 0; c < 3; ++c) {
+    double mean = 0.0;
+    for (std::size_t k = c; k < own.size(); k += 3) mean += static_cast<double>(own[k] - measured[k]) / samples;
+    for (std::size_t k = c; k < own.size(); k += 3) EXPECT_NEAR(static_cast<double>(tile.variance[k] - measured[k]), mean, 1e-6 * mean + 1e-9) << k;  // of floats
+  }
+}
+
 TEST(IndirectRemoval, WhatWasTakenOutCanBePutBackToTheBit) {
   const CalibratedSession session = bowl_session();
   LumitexelSet lumitexels = bowl_lumitexels(kAlbedo, 1);
