@@ -1,16 +1,16 @@
-// What a subcommand is: options declared on a CLI::App, and one function to run. Each command lives in
+// What a subcommand is: its options (command_line.h), and one function to run. Each command lives in
 // command_<name>.cpp: it reads its options, calls one library function and says what came out.
 //
 // Result and logs: with --json the JSON goes to stdout and nothing else does; without it the text does. Progress and
 // logs go to stderr. Exit codes: 0 done, 1 the work failed, 2 bad usage or input.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <stop_token>
 #include <string>
 
+#include "rig/console/command_line.h"
 #include "rig/progress.h"
 
 namespace lumitexel {

@@ -303,17 +303,15 @@ CommandResult run(const CalibrateOptions& options, CommandContext& context) {
 
 void add_calibrate_command(CLI::App& app, CommandAction& action) {
   const auto options = std::make_shared<CalibrateOptions>();
-  CLI::App* command =
-      app.add_subcommand("calibrate", "Sensor, lens, poses, light positions, absolute scale, radiance; with uncertainties. Kept in SESSION/derived, where fit finds them");
-  command->add_option("SESSION", options->session, "The session's folder")->required();
-  command->add_option("--page", options->page, "Writes what was found as one HTML page, with pictures");
-  command->add_option("--lens-out", options->lens_out, "Writes the lens calibration, for capture --lens");
-  command
-      ->add_option("--without", options->without,
-                   "Leaves steps out, to see what they are worth, several by commas. STEP is one of " + step_help())
-      ->type_name("STEP")
-      ->delimiter(',');
-  command->callback(
+  Command command(app, "calibrate", "Sensor, lens, poses, light positions, absolute scale, radiance; with uncertainties. Kept in SESSION/derived, where fit finds them");
+  command.add_option("SESSION", options->session, "The session's folder").required();
+  command.add_option("--page", options->page, "Writes what was found as one HTML page, with pictures");
+  command.add_option("--lens-out", options->lens_out, "Writes the lens calibration, for capture --lens");
+  command.add_option("--without", options->without,
+                     "Leaves steps out, to see what they are worth, several by commas. STEP is one of " + step_help())
+      .type_name("STEP")
+      .delimiter(',');
+  command.callback(
       [options, &action] { action = [options](CommandContext& context) { return run(*options, context); }; });
 }
 

@@ -45,14 +45,14 @@ CommandResult run(const CaptureOptions& options, CommandContext& context) {
 
 void add_capture_command(CLI::App& app, CommandAction& action) {
   const auto options = std::make_shared<CaptureOptions>();
-  CLI::App* command = app.add_subcommand("capture", "Photograph what a plan wants into a new session");
-  command->add_option("RIG", options->rig, "Rig description, TOML")->required();
-  command->add_option("PLAN", options->plan, "Capture plan, TOML")->required();
-  command->add_option("--mesh", options->mesh, "The object's coarse mesh (PLY, OBJ), instead of the plan's");
-  command->add_option("--lens", options->lens,
-                      "A lens calibration (calibrate --lens-out); board shots in the plan then check whether it still holds");
-  command->add_option("--out", options->out, "The session's folder: empty or not there yet")->required();
-  command->callback(
+  Command command(app, "capture", "Photograph what a plan wants into a new session");
+  command.add_option("RIG", options->rig, "Rig description, TOML").required();
+  command.add_option("PLAN", options->plan, "Capture plan, TOML").required();
+  command.add_option("--mesh", options->mesh, "The object's coarse mesh (PLY, OBJ), instead of the plan's");
+  command.add_option("--lens", options->lens,
+                     "A lens calibration (calibrate --lens-out); board shots in the plan then check whether it still holds");
+  command.add_option("--out", options->out, "The session's folder: empty or not there yet").required();
+  command.callback(
       [options, &action] { action = [options](CommandContext& context) { return run(*options, context); }; });
 }
 

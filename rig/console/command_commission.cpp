@@ -158,13 +158,12 @@ CommandResult run(const CommissionOptions& options, CommandContext& context) {
 
 void add_commission_command(CLI::App& app, CommandAction& action) {
   const auto options = std::make_shared<CommissionOptions>();
-  CLI::App* command = app.add_subcommand(
-      "commission", "Measure a connected rig: latency, linearity, noise, settling, backlash, clocks; write what it is");
-  command->add_option("RIG", options->rig, "Rig description, TOML")->required();
-  command->add_option("--out", options->out, "Write the measured description here: a rig file that builds on RIG");
-  command->add_option("--page", options->page, "Write numbers and curves here: one offline HTML page");
-  command->footer("Put something with visible detail on the turntable, in the point light. Nothing is stored but --out and --page.");
-  command->callback(
+  Command command(app, "commission", "Measure a connected rig: latency, linearity, noise, settling, backlash, clocks; write what it is");
+  command.add_option("RIG", options->rig, "Rig description, TOML").required();
+  command.add_option("--out", options->out, "Write the measured description here: a rig file that builds on RIG");
+  command.add_option("--page", options->page, "Write numbers and curves here: one offline HTML page");
+  command.footer("Put something with visible detail on the turntable, in the point light. Nothing is stored but --out and --page.");
+  command.callback(
       [options, &action] { action = [options](CommandContext& context) { return run(*options, context); }; });
 }
 

@@ -77,12 +77,11 @@ CommandResult evaluate_command(const EvaluateSettings& settings, CommandContext&
 
 void add_evaluate_command(CLI::App& app, CommandAction& action) {
   auto settings = std::make_shared<EvaluateSettings>();
-  CLI::App* command =
-      app.add_subcommand("evaluate", "Compare a model with a session's photographs, held-out ones apart");
-  command->add_option("MODEL", settings->model, "Folder of the model")->required();
-  command->add_option("SESSION", settings->session, "Session to compare with, as a rule the one it was fitted to")
-      ->required();
-  command->callback([settings, &action] {
+  Command command(app, "evaluate", "Compare a model with a session's photographs, held-out ones apart");
+  command.add_option("MODEL", settings->model, "Folder of the model").required();
+  command.add_option("SESSION", settings->session, "Session to compare with, as a rule the one it was fitted to")
+      .required();
+  command.callback([settings, &action] {
     action = [settings](CommandContext& context) { return evaluate_command(*settings, context); };
   });
 }

@@ -135,18 +135,17 @@ CommandResult experiment_command(const ExperimentSettings& settings, CommandCont
 
 void add_experiment_command(CLI::App& app, CommandAction& action) {
   auto settings = std::make_shared<ExperimentSettings>();
-  CLI::App* command = app.add_subcommand(
-      "experiment", "The paper's synthetic experiment: five materials under noise, clustered over many seeds, against the best possible");
-  command->add_option("--seeds", settings->seeds, "Seeds for each setting")->check(CLI::Range(1, 100000))->capture_default_str();
-  command->add_option("--first-seed", settings->first_seed, "The first of them")->capture_default_str();
-  command->add_option("--only", settings->only, "These settings only: " + setting_names())->type_name("NAME");
-  command->add_option("--page", settings->page, "HTML file to write, with drawings of lobes, errors and labels");
-  command->add_option("--method", settings->method, "lumitexel, or paper: clustering as published")->capture_default_str();
-  command->add_option("--materials", settings->materials, "How many materials to look for, 1 to 64, or auto: as many as the samples ask for")
-      ->capture_default_str();
-  command->add_flag_callback("--paper", [settings] { settings->method = "paper"; }, "The same as --method paper");
-  command->add_flag_callback("--auto", [settings] { settings->materials = "auto"; }, "The same as --materials auto");
-  command->callback([settings, &action] {
+  Command command(app, "experiment", "The paper's synthetic experiment: five materials under noise, clustered over many seeds, against the best possible");
+  command.add_option("--seeds", settings->seeds, "Seeds for each setting").range(1, 100000).capture_default_str();
+  command.add_option("--first-seed", settings->first_seed, "The first of them").capture_default_str();
+  command.add_option("--only", settings->only, "These settings only: " + setting_names()).type_name("NAME");
+  command.add_option("--page", settings->page, "HTML file to write, with drawings of lobes, errors and labels");
+  command.add_option("--method", settings->method, "lumitexel, or paper: clustering as published").capture_default_str();
+  command.add_option("--materials", settings->materials, "How many materials to look for, 1 to 64, or auto: as many as the samples ask for")
+      .capture_default_str();
+  command.add_flag_callback("--paper", [settings] { settings->method = "paper"; }, "The same as --method paper");
+  command.add_flag_callback("--auto", [settings] { settings->materials = "auto"; }, "The same as --materials auto");
+  command.callback([settings, &action] {
     action = [settings](CommandContext& context) { return experiment_command(*settings, context); };
   });
 }

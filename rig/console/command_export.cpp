@@ -48,13 +48,13 @@ CommandResult export_command(const ExportSettings& settings, CommandContext& con
 
 void add_export_command(CLI::App& app, CommandAction& action) {
   auto settings = std::make_shared<ExportSettings>();
-  CLI::App* command = app.add_subcommand("export", "Write a model for other programs, and how much of its look that costs");
-  command->add_option("MODEL", settings->model, "Folder of the model")->required();
-  command->add_option("--to", settings->to, kFormats)->required();
-  command->add_option("--mesh", settings->mesh,
-                      "The model's own mesh.ply with its vertices moved, such as a frame of an animation: the maps go onto it, normals turn with it");
-  command->add_option("--out", settings->out, "New or empty folder to write into")->required();
-  command->callback([settings, &action] {
+  Command command(app, "export", "Write a model for other programs, and how much of its look that costs");
+  command.add_option("MODEL", settings->model, "Folder of the model").required();
+  command.add_option("--to", settings->to, kFormats).required();
+  command.add_option("--mesh", settings->mesh,
+                     "The model's own mesh.ply with its vertices moved, such as a frame of an animation: the maps go onto it, normals turn with it");
+  command.add_option("--out", settings->out, "New or empty folder to write into").required();
+  command.callback([settings, &action] {
     action = [settings](CommandContext& context) { return export_command(*settings, context); };
   });
 }

@@ -293,70 +293,70 @@ CommandResult fit_command(const FitSettings& settings, CommandContext& context) 
 
 void add_fit_command(CLI::App& app, CommandAction& action) {
   auto settings = std::make_shared<FitSettings>();
-  CLI::App* command = app.add_subcommand("fit", "Turn a session into a model: materials, and weights for every texel. Calibrates the session first, into its derived/");
-  command->add_option("SESSION", settings->session, "Session to fit: captured or imported")->required();
-  command->add_option("--out", settings->out, "Folder of the model; a model that is there is replaced")->required();
-  command->add_option("--quality", settings->quality,
-                      "draft: the mesh's normals, and light between surfaces left in; standard: normals where they pay, that light taken out where the photographs show it; "
-                      "reference: that light in up to four rounds, with materials learnt on 50,000 surface points instead of 2,000, fitted to all instead of 2,000, "
-                      "and lobes as the samples ask for")
-      ->capture_default_str();
-  command->add_option("--materials", settings->materials, "How many materials to look for, 1 to 64, or auto: as many as the samples ask for, at most 20 (default: auto, with --method paper, which does not choose, 4)");
-  command->add_option("--method", settings->method,
-                      "lumitexel, or paper: clustering, fits and projection as published (Lensch et al. 2003), for comparison")
-      ->capture_default_str();
-  command->add_option("--family", settings->family, "Lobes of this family: " + words_of(family_words()) + ": whichever predicts left-out samples best (default: lafortune, with --quality reference auto)");
-  command->add_option("--lobes", settings->lobes, "Most lobes of a material; each must be asked for by its samples (default: 2, with --quality reference 3, with --method paper 1, "
-                      "which asks nothing)")
-      ->check(CLI::Range(0, 3));
-  command->add_option("--learning-points", settings->learning_points,
-                      "Surface points that the materials are learnt on (default: 2000, with --quality reference 50000)")
-      ->check(CLI::Range(100, 10'000'000));
-  command->add_option("--final-points", settings->final_points,
-                      "Points of its own that each material is fitted to at the end (default: 2000, with --quality reference all)")
-      ->check(CLI::Range(100, 10'000'000));
-  command->add_option("--draw", settings->draw,
-                      "Which points the materials are learnt on and fitted to: 0, 1, 2, ...; what differs between draws is chance (see tradeoff --draws). All the "
-                      "same where there are no more points than that")
-      ->check(CLI::Range(0, 1'000'000));
-  command->add_option("--normals", settings->normals,
-                      "fitted: normals finer than the mesh's, from all photographs, and then everything once more on them; texel: the same, each texel by "
-                      "its own samples alone, as in the paper; mesh: the mesh's own; auto: fitted where photographs left out for it are then predicted better (default: auto, with "
-                      "--quality draft and --method paper mesh)");
-  command->add_option("--interreflections", settings->interreflections,
-                      "auto: light between the object's own surfaces is predicted where it can matter, and taken out of the samples if they show it; always: "
-                      "whether they show it or not; off (default: auto, with --quality draft and --method paper off)");
-  command->add_option("--layout", settings->layout,
-                      "photographs: an atlas whose texels are the pixels of each surface point's best photograph; mesh: the mesh's own "
-                      "texture coordinates, kept as they are; auto: the mesh's if it has some that serve, else photographs")
-      ->capture_default_str();
-  command->add_option("--atlas-size", settings->atlas_size,
-                      "Texels a side of the mesh's own layout (default: as fine as the best photographs in the middle)")
-      ->check(CLI::Range(16, 16384));
-  command->add_option("--errors", settings->errors,
-                      "What a fit takes for noise. given: 30 % of each prediction and of the median; estimated: what each material's "
-                      "residuals say, outliers counting less; labels: estimated for telling materials apart, given for fitting "
-                      "them; auto: whichever predicts left-out samples best, and estimated also where it loses next to nothing")
-      ->capture_default_str();
-  command->add_flag("--principal-functions", settings->principal_functions,
-                    "Also move the basis BRDFs of each material (principal function analysis), where left-out surface points are "
-                    "then predicted better; always with --method paper");
-  command->add_option("--intensity-weight", settings->intensity_weight,
-                      "With --method paper: what intensity counts beside colour when materials are told apart (default: 0.3)")
-      ->check(CLI::Range(1e-3, 1.0));
-  command->add_option("--lobe-shapes", settings->lobe_shapes,
-                      "shared: one lobe shape for all colour channels of a material; separate: one a channel, as in the paper; auto: "
-                      "separate where that predicts left-out samples better (default: shared, with --quality reference auto, with --method paper separate)");
-  command->add_option("--bases", settings->bases,
-                      "Most BRDFs that a material's texels mix: 1 the material itself; 2 and 3 its variations; up to 8 other materials; "
-                      "auto: no more than predict left-out samples better")
-      ->capture_default_str();
-  command->add_option("--precision", settings->precision, "Of the values that texels' weights are computed from: double or float")
-      ->capture_default_str();
-  command->add_flag("--plain-projection", settings->plain_projection,
-                    "Project texels by least squares without a prior, as the paper does: closer to the photographs of the "
-                    "fit, farther from others");
-  command->callback([settings, &action] {
+  Command command(app, "fit", "Turn a session into a model: materials, and weights for every texel. Calibrates the session first, into its derived/");
+  command.add_option("SESSION", settings->session, "Session to fit: captured or imported").required();
+  command.add_option("--out", settings->out, "Folder of the model; a model that is there is replaced").required();
+  command.add_option("--quality", settings->quality,
+                     "draft: the mesh's normals, and light between surfaces left in; standard: normals where they pay, that light taken out where the photographs show it; "
+                     "reference: that light in up to four rounds, with materials learnt on 50,000 surface points instead of 2,000, fitted to all instead of 2,000, "
+                     "and lobes as the samples ask for")
+      .capture_default_str();
+  command.add_option("--materials", settings->materials, "How many materials to look for, 1 to 64, or auto: as many as the samples ask for, at most 20 (default: auto, with --method paper, which does not choose, 4)");
+  command.add_option("--method", settings->method,
+                     "lumitexel, or paper: clustering, fits and projection as published (Lensch et al. 2003), for comparison")
+      .capture_default_str();
+  command.add_option("--family", settings->family, "Lobes of this family: " + words_of(family_words()) + ": whichever predicts left-out samples best (default: lafortune, with --quality reference auto)");
+  command.add_option("--lobes", settings->lobes, "Most lobes of a material; each must be asked for by its samples (default: 2, with --quality reference 3, with --method paper 1, "
+                     "which asks nothing)")
+      .range(0, 3);
+  command.add_option("--learning-points", settings->learning_points,
+                     "Surface points that the materials are learnt on (default: 2000, with --quality reference 50000)")
+      .range(100, 10'000'000);
+  command.add_option("--final-points", settings->final_points,
+                     "Points of its own that each material is fitted to at the end (default: 2000, with --quality reference all)")
+      .range(100, 10'000'000);
+  command.add_option("--draw", settings->draw,
+                     "Which points the materials are learnt on and fitted to: 0, 1, 2, ...; what differs between draws is chance (see tradeoff --draws). All the "
+                     "same where there are no more points than that")
+      .range(0, 1'000'000);
+  command.add_option("--normals", settings->normals,
+                     "fitted: normals finer than the mesh's, from all photographs, and then everything once more on them; texel: the same, each texel by "
+                     "its own samples alone, as in the paper; mesh: the mesh's own; auto: fitted where photographs left out for it are then predicted better (default: auto, with "
+                     "--quality draft and --method paper mesh)");
+  command.add_option("--interreflections", settings->interreflections,
+                     "auto: light between the object's own surfaces is predicted where it can matter, and taken out of the samples if they show it; always: "
+                     "whether they show it or not; off (default: auto, with --quality draft and --method paper off)");
+  command.add_option("--layout", settings->layout,
+                     "photographs: an atlas whose texels are the pixels of each surface point's best photograph; mesh: the mesh's own "
+                     "texture coordinates, kept as they are; auto: the mesh's if it has some that serve, else photographs")
+      .capture_default_str();
+  command.add_option("--atlas-size", settings->atlas_size,
+                     "Texels a side of the mesh's own layout (default: as fine as the best photographs in the middle)")
+      .range(16, 16384);
+  command.add_option("--errors", settings->errors,
+                     "What a fit takes for noise. given: 30 % of each prediction and of the median; estimated: what each material's "
+                     "residuals say, outliers counting less; labels: estimated for telling materials apart, given for fitting "
+                     "them; auto: whichever predicts left-out samples best, and estimated also where it loses next to nothing")
+      .capture_default_str();
+  command.add_flag("--principal-functions", settings->principal_functions,
+                   "Also move the basis BRDFs of each material (principal function analysis), where left-out surface points are "
+                   "then predicted better; always with --method paper");
+  command.add_option("--intensity-weight", settings->intensity_weight,
+                     "With --method paper: what intensity counts beside colour when materials are told apart (default: 0.3)")
+      .range(1e-3, 1.0);
+  command.add_option("--lobe-shapes", settings->lobe_shapes,
+                     "shared: one lobe shape for all colour channels of a material; separate: one a channel, as in the paper; auto: "
+                     "separate where that predicts left-out samples better (default: shared, with --quality reference auto, with --method paper separate)");
+  command.add_option("--bases", settings->bases,
+                     "Most BRDFs that a material's texels mix: 1 the material itself; 2 and 3 its variations; up to 8 other materials; "
+                     "auto: no more than predict left-out samples better")
+      .capture_default_str();
+  command.add_option("--precision", settings->precision, "Of the values that texels' weights are computed from: double or float")
+      .capture_default_str();
+  command.add_flag("--plain-projection", settings->plain_projection,
+                   "Project texels by least squares without a prior, as the paper does: closer to the photographs of the "
+                   "fit, farther from others");
+  command.callback([settings, &action] {
     action = [settings](CommandContext& context) { return fit_command(*settings, context); };
   });
 }

@@ -11,19 +11,19 @@ void add_import_command(CLI::App& app, CommandAction& action) {
     std::filesystem::path masks, out;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("import", "Make a session of photographs taken elsewhere");
-  command->add_option("--colmap", options->sources.colmap, "Directory of COLMAP's cameras.txt and images.txt")
-      ->required();
-  command->add_option("--images", options->sources.images, "Directory of the photographs: EXR, or PNG or TIFF")
-      ->required();
-  command->add_option("--lights", options->sources.lights, "CSV of the light of each photograph")->required();
-  command->add_option("--mesh", options->sources.mesh, "The object's surface, PLY or OBJ, in metres")->required();
-  command->add_option("--masks", options->masks, "Directory of masks, 8-bit PNG, 255 where the object is");
-  command->add_option(
+  Command command(app, "import", "Make a session of photographs taken elsewhere");
+  command.add_option("--colmap", options->sources.colmap, "Directory of COLMAP's cameras.txt and images.txt")
+      .required();
+  command.add_option("--images", options->sources.images, "Directory of the photographs: EXR, or PNG or TIFF")
+      .required();
+  command.add_option("--lights", options->sources.lights, "CSV of the light of each photograph").required();
+  command.add_option("--mesh", options->sources.mesh, "The object's surface, PLY or OBJ, in metres").required();
+  command.add_option("--masks", options->masks, "Directory of masks, 8-bit PNG, 255 where the object is");
+  command.add_option(
       "--response", options->sources.response,
       "How 8- and 16-bit code values map to light: linear, srgb or a CSV file of code,linear from 0,… to 1,…");
-  command->add_option("--out", options->out, "The session to make")->required();
-  command->callback([options, &action] {
+  command.add_option("--out", options->out, "The session to make").required();
+  command.callback([options, &action] {
     action = [options](CommandContext& context) {
       if (!options->masks.empty()) options->sources.masks = options->masks;
       const ImportSummary summary = import_session(options->sources, options->out, context.progress, context.stop);

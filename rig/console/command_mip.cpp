@@ -46,12 +46,12 @@ CommandResult mip_command(const MipSettings& settings, CommandContext& context) 
 
 void add_mip_command(CLI::App& app, CommandAction& action) {
   auto settings = std::make_shared<MipSettings>();
-  CLI::App* command = app.add_subcommand("mip", "Coarser levels of a model's maps, for pictures from afar; render --level shows them");
-  command->add_option("MODEL", settings->model, "Folder of the model; its levels are written to MODEL/levels, replacing those there")->required();
-  command->add_option("--session", settings->session,
-                      "The session that the model was fitted to: levels are fitted anew to its photographs, normals too, instead of averaged");
-  command->add_option("--levels", settings->levels, "How many, each half as fine as the one before; an atlas of many small patches shrinks by less, as each keeps a border")->check(CLI::Range(1, kMostLevels))->capture_default_str();
-  command->callback([settings, &action] {
+  Command command(app, "mip", "Coarser levels of a model's maps, for pictures from afar; render --level shows them");
+  command.add_option("MODEL", settings->model, "Folder of the model; its levels are written to MODEL/levels, replacing those there").required();
+  command.add_option("--session", settings->session,
+                     "The session that the model was fitted to: levels are fitted anew to its photographs, normals too, instead of averaged");
+  command.add_option("--levels", settings->levels, "How many, each half as fine as the one before; an atlas of many small patches shrinks by less, as each keeps a border").range(1, kMostLevels).capture_default_str();
+  command.callback([settings, &action] {
     action = [settings](CommandContext& context) { return mip_command(*settings, context); };
   });
 }

@@ -73,11 +73,11 @@ CommandResult run(const PlanOptions& options) {
 
 void add_plan_command(CLI::App& app, CommandAction& action) {
   const auto options = std::make_shared<PlanOptions>();
-  CLI::App* command = app.add_subcommand("plan", "Check a plan against a rig and say what it will cost; moves nothing");
-  command->add_option("RIG", options->rig, "Rig description, TOML")->required();
-  command->add_option("PLAN", options->plan, "Capture plan, TOML")->required();
-  command->add_option("--mesh", options->mesh, "The object's coarse mesh (PLY, OBJ), instead of the plan's");
-  command->callback([options, &action] { action = [options](CommandContext&) { return run(*options); }; });
+  Command command(app, "plan", "Check a plan against a rig and say what it will cost; moves nothing");
+  command.add_option("RIG", options->rig, "Rig description, TOML").required();
+  command.add_option("PLAN", options->plan, "Capture plan, TOML").required();
+  command.add_option("--mesh", options->mesh, "The object's coarse mesh (PLY, OBJ), instead of the plan's");
+  command.callback([options, &action] { action = [options](CommandContext&) { return run(*options); }; });
 }
 
 }  // namespace lumitexel

@@ -131,9 +131,9 @@ CommandResult render_command(const RenderSettings& settings, CommandContext& con
 
 void add_render_command(CLI::App& app, CommandAction& action) {
   auto settings = std::make_shared<RenderSettings>();
-  CLI::App* command = app.add_subcommand("render", "Picture of a model from a session's view or a camera of your own: by rays, with bounces if asked, or by points");
-  add_render_options(*command, *settings);
-  command->callback([settings, &action] {
+  Command command(app, "render", "Picture of a model from a session's view or a camera of your own: by rays, with bounces if asked, or by points");
+  add_render_options(command, *settings);
+  command.callback([settings, &action] {
     action = [settings](CommandContext& context) { return render_command(*settings, context); };
   });
 }

@@ -40,20 +40,17 @@ CommandResult run(const ReplayOptions& options, CommandContext& context) {
 
 void add_replay_command(CLI::App& app, CommandAction& action) {
   const auto options = std::make_shared<ReplayOptions>();
-  CLI::App* command = app.add_subcommand(
-      "replay", "Play a recorded session back into a new one, all of it or with views left out");
-  command->add_option("SESSION", options->session, "The recorded session's folder")->required();
-  command->add_option("--out", options->out, "The new session's folder: empty or not there yet")->required();
-  command->add_option("--without", options->selection.without,
-                      "What to leave out: view=NAME, view=INDEX (from 0 in the plan's order), views=FIRST..LAST, "
-                      "several by commas (views=0..2,heldout_000), or kind=dark and other kinds of shot; may be given again")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_option("--only", options->selection.only,
-                      "Which views to keep, in the same words; may be given again. Gray card and darks always stay")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->callback(
+  Command command(app, "replay", "Play a recorded session back into a new one, all of it or with views left out");
+  command.add_option("SESSION", options->session, "The recorded session's folder").required();
+  command.add_option("--out", options->out, "The new session's folder: empty or not there yet").required();
+  command.add_option("--without", options->selection.without,
+                     "What to leave out: view=NAME, view=INDEX (from 0 in the plan's order), views=FIRST..LAST, "
+                     "several by commas (views=0..2,heldout_000), or kind=dark and other kinds of shot; may be given again")
+      .one_each_time();
+  command.add_option("--only", options->selection.only,
+                     "Which views to keep, in the same words; may be given again. Gray card and darks always stay")
+      .one_each_time();
+  command.callback(
       [options, &action] { action = [options](CommandContext& context) { return run(*options, context); }; });
 }
 

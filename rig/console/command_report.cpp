@@ -78,14 +78,13 @@ CommandResult report_command(const ReportSettings& settings, CommandContext& con
 
 void add_report_command(CLI::App& app, CommandAction& action) {
   auto settings = std::make_shared<ReportSettings>();
-  CLI::App* command =
-      app.add_subcommand("report", "One self-contained HTML page: pictures, errors, materials, timings");
-  command->add_option("MODEL", settings->model, "Folder of the model")->required();
-  command->add_option("--session", settings->session, "Session whose photographs are shown beside their re-renderings");
-  command->add_option("--out,--page", settings->out, "HTML file to write (default: MODEL/report.html)");
-  command->add_flag("--without-viewer", settings->without_viewer,
-                    "Leave out the interactive view, which adds about as much to the page as lumitexel view writes (at most 16 MB)");
-  command->callback([settings, &action] {
+  Command command(app, "report", "One self-contained HTML page: pictures, errors, materials, timings");
+  command.add_option("MODEL", settings->model, "Folder of the model").required();
+  command.add_option("--session", settings->session, "Session whose photographs are shown beside their re-renderings");
+  command.add_option("--out,--page", settings->out, "HTML file to write (default: MODEL/report.html)");
+  command.add_flag("--without-viewer", settings->without_viewer,
+                   "Leave out the interactive view, which adds about as much to the page as lumitexel view writes (at most 16 MB)");
+  command.callback([settings, &action] {
     action = [settings](CommandContext& context) { return report_command(*settings, context); };
   });
 }

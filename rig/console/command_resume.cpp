@@ -32,10 +32,9 @@ CommandResult run(const std::string& directory, CommandContext& context) {
 
 void add_resume_command(CLI::App& app, CommandAction& action) {
   const auto directory = std::make_shared<std::string>();
-  CLI::App* command =
-      app.add_subcommand("resume", "Go on with a capture or replay that was stopped: take the shots it lacks");
-  command->add_option("SESSION", *directory, "The session's folder")->required();
-  command->callback(
+  Command command(app, "resume", "Go on with a capture or replay that was stopped: take the shots it lacks");
+  command.add_option("SESSION", *directory, "The session's folder").required();
+  command.callback(
       [directory, &action] { action = [directory](CommandContext& context) { return run(*directory, context); }; });
 }
 

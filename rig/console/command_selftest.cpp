@@ -39,10 +39,10 @@ CommandResult run(const SelfTestOptions& options, CommandContext& context) {
 
 void add_selftest_command(CLI::App& app, CommandAction& action) {
   const auto options = std::make_shared<SelfTestOptions>();
-  CLI::App* command = app.add_subcommand("selftest", "Try this program's own arithmetic on this machine");
-  command->add_flag("--numerics", options->numerics, "BRDF kernels and fits at their extremes, against 113-bit arithmetic");
-  command->add_flag("--full", options->full, "A million trials a row and ten million lumitexels, instead of 20,000 each");
-  command->callback([options, &action] { action = [options](CommandContext& context) { return run(*options, context); }; });
+  Command command(app, "selftest", "Try this program's own arithmetic on this machine");
+  command.add_flag("--numerics", options->numerics, "BRDF kernels and fits at their extremes, against 113-bit arithmetic");
+  command.add_flag("--full", options->full, "A million trials a row and ten million lumitexels, instead of 20,000 each");
+  command.callback([options, &action] { action = [options](CommandContext& context) { return run(*options, context); }; });
 }
 
 }  // namespace lumitexel

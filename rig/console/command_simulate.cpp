@@ -85,18 +85,17 @@ CommandResult run(const SimulateOptions& options, CommandContext& context) {
 
 void add_simulate_command(CLI::App& app, CommandAction& action) {
   const auto options = std::make_shared<SimulateOptions>();
-  CLI::App* command = app.add_subcommand(
-      "simulate", "Serve a rig's devices, simulated, over their real protocols, for any client; until Ctrl-C");
-  command->add_option("RIG", options->rig, "Rig description with [hardware] and [simulation], TOML")->required();
-  command->add_option("--scan-out", options->scan_out, "Write the coarse mesh of the simulated object here (PLY)");
-  command->add_option("--fault", options->faults,
-                      "NAME=PROBABILITY: let every operation go wrong so often. mute, late_reply, exception, garbage, "
-                      "half_reply, disconnect, lose_packets, reorder_packets, late_settings, false_metadata, stale_frame, "
-                      "wedge, card_full, stuck_axis, lamp_fails; may be given several times");
-  command->add_option("--seed", options->seed, "Of the faults")->capture_default_str();
-  command->add_option("--for", options->for_s, "Stop after so many seconds")->check(CLI::PositiveNumber);
-  command->footer("\"simulate: ready\" on stderr says that clients may connect. `lumitexel capture RIG PLAN` is one.");
-  command->callback(
+  Command command(app, "simulate", "Serve a rig's devices, simulated, over their real protocols, for any client; until Ctrl-C");
+  command.add_option("RIG", options->rig, "Rig description with [hardware] and [simulation], TOML").required();
+  command.add_option("--scan-out", options->scan_out, "Write the coarse mesh of the simulated object here (PLY)");
+  command.add_option("--fault", options->faults,
+                     "NAME=PROBABILITY: let every operation go wrong so often. mute, late_reply, exception, garbage, "
+                     "half_reply, disconnect, lose_packets, reorder_packets, late_settings, false_metadata, stale_frame, "
+                     "wedge, card_full, stuck_axis, lamp_fails; may be given several times");
+  command.add_option("--seed", options->seed, "Of the faults").capture_default_str();
+  command.add_option("--for", options->for_s, "Stop after so many seconds").positive();
+  command.footer("\"simulate: ready\" on stderr says that clients may connect. `lumitexel capture RIG PLAN` is one.");
+  command.callback(
       [options, &action] { action = [options](CommandContext& context) { return run(*options, context); }; });
 }
 

@@ -140,20 +140,19 @@ CommandResult tradeoff_command(const TradeoffArguments& arguments, CommandContex
 
 void add_tradeoff_command(CLI::App& app, CommandAction& action) {
   auto arguments = std::make_shared<TradeoffArguments>();
-  CLI::App* command = app.add_subcommand(
-      "tradeoff", "Speed against accuracy on this session: fits it with one setting after another, each judged by held-out photographs");
-  command->add_option("SESSION", arguments->session, "Session to fit, with held-out views")->required();
-  command->add_option("--materials", arguments->materials, "Materials of every fit, 1 to 64, or auto (default: auto, but for settings that say how many, and the paper's method, which "
-                      "does not choose: 4)");
-  command->add_flag("--reference,--full", arguments->full, "Also the reference preset, the most thorough");
-  command->add_option("--only", arguments->only, "These settings only: " + setting_names())->delimiter(',')->type_name("NAME");
-  command->footer(meanings(tradeoff_settings({}, true, {})));
-  command->add_option("--draws", arguments->draws, "Fits of each setting, each to materials learnt on other surface points: tells what of a difference is chance")
-      ->check(CLI::Range(1, 100))
-      ->capture_default_str();
-  command->add_option("--keep", arguments->keep, "File of fits, added to as they come; those it has of this session, setting, draw, program and machine are not made again");
-  command->add_option("--page", arguments->page, "HTML file to write, with a drawing of error against CPU seconds");
-  command->callback([arguments, &action] {
+  Command command(app, "tradeoff", "Speed against accuracy on this session: fits it with one setting after another, each judged by held-out photographs");
+  command.add_option("SESSION", arguments->session, "Session to fit, with held-out views").required();
+  command.add_option("--materials", arguments->materials, "Materials of every fit, 1 to 64, or auto (default: auto, but for settings that say how many, and the paper's method, which "
+                     "does not choose: 4)");
+  command.add_flag("--reference,--full", arguments->full, "Also the reference preset, the most thorough");
+  command.add_option("--only", arguments->only, "These settings only: " + setting_names()).delimiter(',').type_name("NAME");
+  command.footer(meanings(tradeoff_settings({}, true, {})));
+  command.add_option("--draws", arguments->draws, "Fits of each setting, each to materials learnt on other surface points: tells what of a difference is chance")
+      .range(1, 100)
+      .capture_default_str();
+  command.add_option("--keep", arguments->keep, "File of fits, added to as they come; those it has of this session, setting, draw, program and machine are not made again");
+  command.add_option("--page", arguments->page, "HTML file to write, with a drawing of error against CPU seconds");
+  command.callback([arguments, &action] {
     action = [arguments](CommandContext& context) { return tradeoff_command(*arguments, context); };
   });
 }

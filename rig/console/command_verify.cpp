@@ -32,9 +32,9 @@ CommandResult run(const std::string& directory, CommandContext& context) {
 
 void add_verify_command(CLI::App& app, CommandAction& action) {
   const auto directory = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("verify", "Check every byte against its hash, every frame against its shot");
-  command->add_option("SESSION", *directory, "The session's folder")->required();
-  command->callback(
+  Command command(app, "verify", "Check every byte against its hash, every frame against its shot");
+  command.add_option("SESSION", *directory, "The session's folder").required();
+  command.callback(
       [directory, &action] { action = [directory](CommandContext& context) { return run(*directory, context); }; });
 }
 

@@ -51,14 +51,14 @@ CommandResult view_command(const ViewSettings& settings, CommandContext& context
 
 void add_view_command(CLI::App& app, CommandAction& action) {
   auto settings = std::make_shared<ViewSettings>();
-  CLI::App* command = app.add_subcommand("view", "Interactive page of a model, one file that works offline: turn it, move the light, look into its texels");
-  command->add_option("MODEL", settings->model, "Folder of the model")->required();
-  command->add_option("--session", settings->session,
-                      "Session that the model was fitted to: a click on the object then shows the samples of its photographs (at most 16 MB of them)");
-  command->add_option("--environment", settings->environment,
-                      "EXR of all directions, latitude against longitude, for the page's surroundings (reduced to 256 pixels across); by default a room with two soft boxes");
-  command->add_option("--out", settings->out, "HTML file to write; by default beside the model, with its name");
-  command->callback([settings, &action] {
+  Command command(app, "view", "Interactive page of a model, one file that works offline: turn it, move the light, look into its texels");
+  command.add_option("MODEL", settings->model, "Folder of the model").required();
+  command.add_option("--session", settings->session,
+                     "Session that the model was fitted to: a click on the object then shows the samples of its photographs (at most 16 MB of them)");
+  command.add_option("--environment", settings->environment,
+                     "EXR of all directions, latitude against longitude, for the page's surroundings (reduced to 256 pixels across); by default a room with two soft boxes");
+  command.add_option("--out", settings->out, "HTML file to write; by default beside the model, with its name");
+  command.callback([settings, &action] {
     action = [settings](CommandContext& context) { return view_command(*settings, context); };
   });
 }

@@ -14,7 +14,7 @@ namespace {
 constexpr int kUsualSamples = 64;
 constexpr int kEndlessSamples = 1 << 20;  // where time or noise are to end it: more would not fit the counters' use
 
-void add_view_options(CLI::App& command, RenderSettings& settings) {
+void add_view_options(Command& command, RenderSettings& settings) {
   command.add_option("--session", settings.session, "Session whose camera and light are taken, with --view");
   command.add_option("--view", settings.view, "The view's name in the session; an extension such as .exr may be left out");
   command.add_flag("--camera-only", settings.camera_only,
@@ -24,7 +24,7 @@ void add_view_options(CLI::App& command, RenderSettings& settings) {
                      "the size in pixels");
 }
 
-void add_light_options(CLI::App& command, RenderSettings& settings) {
+void add_light_options(Command& command, RenderSettings& settings) {
   command.add_option("--light", settings.given.light, "Point light \"x,y,z\" in metres; lights add up");
   command.add_option(
       "--light-intensity", settings.given.light_intensity,
@@ -47,12 +47,11 @@ void add_light_options(CLI::App& command, RenderSettings& settings) {
                    "Show it beside the object, which is black otherwise");
 }
 
-void add_quality_options(CLI::App& command, RenderSettings& settings) {
-  command
-      .add_option("--bounces", settings.bounces,
-                  "How often light may go from one surface of the model to another before it reaches the camera; 0: "
-                  "lights alone")
-      ->capture_default_str();
+void add_quality_options(Command& command, RenderSettings& settings) {
+  command.add_option("--bounces", settings.bounces,
+                     "How often light may go from one surface of the model to another before it reaches the camera; 0: "
+                     "lights alone")
+      .capture_default_str();
   command.add_option("--spp", settings.samples_per_pixel,
                      "Rays a pixel for radiance. Under one lamp alone 1 (the pixel's centre) is the default, more a "
                      "fixed pattern; with an environment, "
@@ -128,10 +127,10 @@ void require_what_splats_can_show(const RenderSettings& settings) {
 
 }  // namespace
 
-void add_render_options(CLI::App& command, RenderSettings& settings) {
-  command.add_option("MODEL", settings.model, "Folder of the model")->required();
+void add_render_options(Command& command, RenderSettings& settings) {
+  command.add_option("MODEL", settings.model, "Folder of the model").required();
   command.add_option("--out", settings.out, "EXR file to write: linear radiance, or the map asked for with --aov")
-      ->required();
+      .required();
   add_view_options(command, settings);
   add_light_options(command, settings);
   command.add_option("--stage", settings.stage,
@@ -139,7 +138,7 @@ void add_render_options(CLI::App& command, RenderSettings& settings) {
                      "principal functions, if "
                      "the fit sought them) or normal (on fitted normals); default: all that the model holds");
   command.add_option("--aov", settings.aov, "radiance, normal, position, cluster, samples, sigma (of reflectance, relative) or normal-sigma (per axis, radians; of a model with fitted normals)")
-      ->capture_default_str();
+      .capture_default_str();
   add_quality_options(command, settings);
   command.add_flag("--splat", settings.splat,
                    "Draw the model's texels forward as points instead of casting rays: lamps with shadows only");
@@ -148,8 +147,8 @@ void add_render_options(CLI::App& command, RenderSettings& settings) {
       "PLY or OBJ: put the maps on this mesh, the model's own (or the scan it was fitted on) bent or moved, with "
       "the same triangles in the same order; texels' normals turn with their triangles");
   command.add_option("--level", settings.level, "Show a coarser level of the maps, made by mip: for pictures in which a pixel spans 2^level texels")
-      ->check(CLI::Range(0, 8))
-      ->capture_default_str();
+      .range(0, 8)
+      .capture_default_str();
   command.add_option("--png", settings.png, "Also write a tone-mapped preview");
 }
 

@@ -1,12 +1,12 @@
 // What `lumitexel render` was asked for, and what of it does not go together.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 
 #include "processing/model/render_view.h"
 #include "processing/render/render_lit.h"
+#include "rig/console/command_line.h"
 #include "rig/console/view_options.h"
 
 namespace lumitexel {
@@ -29,7 +29,7 @@ struct RenderSettings {
   }
 };
 
-void add_render_options(CLI::App& command, RenderSettings& settings);
+void add_render_options(Command& command, RenderSettings& settings);
 
 // Throws BadInput naming the options that contradict each other, are missing, or would do nothing.
 void check_render_settings(const RenderSettings& settings, Aov aov);

@@ -1,0 +1,78 @@
+#include "rig/console/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+namespace lumitexel {
+
+CommandOption& CommandOption::required() {
+  option_.required();
+  return *this;
+}
+
+CommandOption& CommandOption::capture_default_str() {
+  option_.capture_default_str();
+  return *this;
+}
+
+CommandOption& CommandOption::type_name(const std::string& name) {
+  option_.type_name(name);
+  return *this;
+}
+
+CommandOption& CommandOption::delimiter(char between) {
+  option_.delimiter(between);
+  return *this;
+}
+
+CommandOption& CommandOption::one_each_time() {
+  option_.expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  return *this;
+}
+
+CommandOption& CommandOption::range(int least, int most) {
+  option_.check(CLI::Range(least, most));
+  return *this;
+}
+
+CommandOption& CommandOption::range(double least, double most) {
+  option_.check(CLI::Range(least, most));
+  return *this;
+}
+
+CommandOption& CommandOption::positive() {
+  option_.check(CLI::PositiveNumber);
+  return *this;
+}
+
+Command::Command(CLI::App& app, const std::string& name, const std::string& description) : app_(*app.add_subcommand(name, description)) {}
+
+template <typename Value>
+CommandOption Command::add_option(const std::string& names, Value& value, const std::string& description) {
+  return CommandOption(*app_.add_option(names, value, description));
+}
+
+template CommandOption Command::add_option(const std::string&, std::string&, const std::string&);
+template CommandOption Command::add_option(const std::string&, std::filesystem::path&, const std::string&);
+template CommandOption Command::add_option(const std::string&, int&, const std::string&);
+template CommandOption Command::add_option(const std::string&, std::uint64_t&, const std::string&);
+template CommandOption Command::add_option(const std::string&, double&, const std::string&);
+template CommandOption Command::add_option(const std::string&, std::optional<int>&, const std::string&);
+template CommandOption Command::add_option(const std::string&, std::optional<std::size_t>&, const std::string&);
+template CommandOption Command::add_option(const std::string&, std::optional<double>&, const std::string&);
+template CommandOption Command::add_option(const std::string&, std::vector<std::string>&, const std::string&);
+
+void Command::add_flag(const std::string& names, bool& value, const std::string& description) { app_.add_flag(names, value, description); }
+
+void Command::add_flag_callback(const std::string& names, std::function<void()> when_given, const std::string& description) {
+  app_.add_flag_callback(names, std::move(when_given), description);
+}
+
+void Command::footer(const std::string& text) { app_.footer(text); }
+
+void Command::callback(std::function<void()> when_chosen) { app_.callback(std::move(when_chosen)); }
+
+}  // namespace lumitexel
