@@ -32,6 +32,10 @@ constexpr Eigen::Index kShape = 5, kBackground = 6, kFirstAmplitude = 7;
 
 // The exponent, kept between heavier tails than any mirror's and what no pixel can tell from a Gaussian.
 double exponent_of(double shape) { return 1.0 + 15.0 / (1.0 + std::exp(-shape)); }
+double exponent_slope_of(double shape) {
+  const double above = exponent_of(shape) - 1.0;
+  return above * (1.0 - above / 15.0);
+}
 constexpr double kStartShape = -2.64;  // exponent 2, a GGX surface's
 
 // What is known of the shape beforehand.
@@ -117,19 +121,19 @@ class PeakModel {
   Eigen::VectorXd residuals(const Parameters& p) const { return residuals(p, profiles(p)); }
 
   Eigen::MatrixXd jacobian(const Parameters& p) const {
-    Eigen::MatrixXd j = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(samples_.size()) + 1, p.size());
-    for (Eigen::Index k = 0; k < kBackground; ++k) {
-      const double step = 1e-5 * std::max(std::abs(p[k]), 0.1);
-      Parameters up = p, down = p;
-      up[k] += step;
-      down[k] -= step;
-      j.col(k) = (residuals(up) - residuals(down)) / (2.0 * step);
-    }
-    const Eigen::VectorXd profile = profiles(p);
-    for (Eigen::Index i = 0; i < profile.size(); ++i) {  // background and amplitudes enter linearly
+    const auto size = static_cast<Eigen::Index>(samples_.size());
+    Eigen::MatrixXd j = Eigen::MatrixXd::Zero(size + 1, p.size());
+    j(size, kShape) = 1.0 / prior_.sigma;
+    const auto rows = domain_.rows(p[0], p[1]);
+    const auto along_x = rows_slope(p, 0), along_y = rows_slope(p, 1);
+    if (!rows || !along_x || !along_y) return j.setConstant(std::numeric_limits<double>::quiet_NaN());
+    for (Eigen::Index i = 0; i < size; ++i) {
       const Sample& s = samples_[static_cast<std::size_t>(i)];
-      j(i, kBackground) = gain(s) / s.sigma;
-      j(i, amplitude_index(s)) = gain(s) * profile[i] / s.sigma;
+      const double scale = gain(s) / s.sigma;
+      const Slopes profile = slopes_at(p, *rows, *along_x, *along_y, static_cast<std::size_t>(i));
+      j.row(i).head<kBackground>() = scale * p[amplitude_index(s)] * profile.by.transpose();
+      j(i, kBackground) = scale;  // background and amplitudes enter linearly
+      j(i, amplitude_index(s)) = scale * profile.value;
     }
     return j;
   }
@@ -184,6 +188,51 @@ class PeakModel {
       }
     }
     return sum / static_cast<double>(kPlaces);
+  }
+
+  // Of the rows by one coordinate of the centre: a central difference, since on a sphere they follow it by a long way round.
+  std::optional<Domain::Rows> rows_slope(const Parameters& p, Eigen::Index coordinate) const {
+    const double step = 1e-5 * std::max(std::abs(p[coordinate]), 0.1);
+    Eigen::Vector2d up = p.head<2>(), down = up;
+    up[coordinate] += step;
+    down[coordinate] -= step;
+    const auto above = domain_.rows(up.x(), up.y()), below = domain_.rows(down.x(), down.y());
+    if (!above || !below) return std::nullopt;
+    return (*above - *below) / (2.0 * step);
+  }
+
+  struct Slopes {
+    double value = 0;
+    Eigen::Matrix<double, kBackground, 1> by = Eigen::Matrix<double, kBackground, 1>::Zero();  // centre, L, shape
+  };
+
+  // profile_at with its derivatives; along_x, along_y: of the rows by the centre.
+  Slopes slopes_at(const Parameters& p, const Domain::Rows& rows, const Domain::Rows& along_x, const Domain::Rows& along_y,
+                   std::size_t sample) const {
+    const double exponent = exponent_of(p[kShape]), exponent_slope = exponent_slope_of(p[kShape]);
+    Slopes slopes;
+    for (std::size_t i = 0; i < kPlaces; ++i) {
+      const Domain::Place& place = places_[sample * kPlaces + i];
+      const Eigen::Vector2d from_centre = rows * place.u, by_x = along_x * place.u, by_y = along_y * place.u;
+      for (const HighlightPeak& peak : domain_.peaks()) {
+        const Eigen::Vector2d t = from_centre - peak.offset_px;
+        const double a = p[2] * t.x(), b = p[3] * t.x() + p[4] * t.y();
+        const double base = 1.0 + (a * a + b * b) / exponent;
+        const double value = peak.share * place.weight * std::pow(base, -exponent);
+        const double by_a = -2.0 * a * value / base, by_b = -2.0 * b * value / base;
+        const Eigen::Vector2d by_t(by_a * p[2] + by_b * p[3], by_b * p[4]);
+        slopes.value += value;
+        slopes.by[0] += by_t.dot(by_x);
+        slopes.by[1] += by_t.dot(by_y);
+        slopes.by[2] += by_a * t.x();
+        slopes.by[3] += by_b * t.x();
+        slopes.by[4] += by_b * t.y();
+        slopes.by[kShape] += exponent_slope * value * ((base - 1.0) / base - std::log(base));
+      }
+    }
+    slopes.value /= static_cast<double>(kPlaces);
+    slopes.by /= static_cast<double>(kPlaces);
+    return slopes;
   }
 
   std::optional<ColourBalance> balance_;
