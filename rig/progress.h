@@ -13,6 +13,8 @@ class Progress {
   virtual void begin(const std::string& stage, std::int64_t total, const std::string& unit) = 0;
   // `done` steps of the current stage are finished. May be called from any thread.
   virtual void update(std::int64_t done) = 0;
+  // What the current stage is at, where it is made of unlike parts. Until the next, or the next stage.
+  virtual void part(const std::string&) {}
 };
 
 // Shows nothing.

@@ -120,6 +120,7 @@ Tradeoff measure_tradeoff(const CalibratedSession& session, const std::vector<Tr
     }
     if (runs[k].empty() || runs[k].back().measured()) {  // else it would fail again
       const TradeoffSetting setting = with_draw(settings[k], static_cast<int>(i / settings.size()));
+      progress.part(setting.name + (draws > 1 ? ", fit " + std::to_string(setting.options.draw + 1) + " of " + std::to_string(draws) : ""));
       SettingProgress part(progress, made, wanted, stages_of(setting.options));
       runs[k].push_back(run_setting(session, heldout, setting, part));
       if (journal != nullptr) journal->keep(setting, runs[k].back());

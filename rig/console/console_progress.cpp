@@ -25,6 +25,7 @@ void ConsoleProgress::begin(const std::string& stage, std::int64_t total, const 
   const std::scoped_lock lock(mutex_);
   finish_locked();
   stage_ = stage;
+  part_.clear();
   unit_ = unit;
   total_ = total;
   last_done_ = 0;
@@ -40,6 +41,11 @@ void ConsoleProgress::update(std::int64_t done) {
   if (now - shown_ < (terminal_ ? std::chrono::steady_clock::duration(kTerminalInterval) : kLineInterval)) return;
   shown_ = now;
   show(last_done_, now);
+}
+
+void ConsoleProgress::part(const std::string& name) {
+  const std::scoped_lock lock(mutex_);
+  part_ = name;
 }
 
 void ConsoleProgress::finish() {
@@ -60,13 +66,14 @@ void ConsoleProgress::show(std::int64_t done, Instant now) {
   const double rate = elapsed_s > 0 ? static_cast<double>(done) / elapsed_s : 0.0;
   const double left_s = rate > 0 ? static_cast<double>(total_ - done) / rate : 0.0;
   const double fraction = total_ > 0 ? static_cast<double>(done) / static_cast<double>(total_) : 0.0;
+  const std::string& label = part_.empty() ? stage_ : part_;  // not both: a line that wraps cannot be drawn over
   if (terminal_) {
     const int filled = std::clamp(static_cast<int>(fraction * kBarWidth), 0, kBarWidth);
     const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
                             std::string(static_cast<std::size_t>(kBarWidth - filled), '.');
-    std::fprintf(stderr, "\r\033[K%-28s [%s]", stage_.c_str(), bar.c_str());
+    std::fprintf(stderr, "\r\033[K%-28s [%s]", label.c_str(), bar.c_str());
   } else {
-    std::fprintf(stderr, "%-28s", stage_.c_str());
+    std::fprintf(stderr, "%-28s", label.c_str());
   }
   std::fprintf(stderr, " %lld/%lld %s, %.3g/s, %.0f s left", static_cast<long long>(done),
                static_cast<long long>(total_), unit_.c_str(), rate, left_s);

@@ -13,6 +13,7 @@ class ConsoleProgress final : public Progress {
   ConsoleProgress();
   void begin(const std::string& stage, std::int64_t total, const std::string& unit) override;
   void update(std::int64_t done) override;
+  void part(const std::string& name) override;
   void finish();  // ends the current stage's line
 
  private:
@@ -22,7 +23,7 @@ class ConsoleProgress final : public Progress {
 
   std::mutex mutex_;
   bool terminal_ = false, open_ = false;
-  std::string stage_, unit_;
+  std::string stage_, part_, unit_;
   std::int64_t total_ = 0, last_done_ = 0;
   Instant started_, shown_;
 };

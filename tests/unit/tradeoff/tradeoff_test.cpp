@@ -36,7 +36,9 @@ class RecordedProgress final : public Progress {
     backwards = backwards || done < last;
     last = done;
   }
+  void part(const std::string& name) override { parts.push_back(name); }
   int stages = 0;
+  std::vector<std::string> parts;
   std::int64_t total = 0, last = 0;
   bool backwards = false;
 };
@@ -69,6 +71,7 @@ TEST(Tradeoff, MeasuresEachSettingAndSaysWhyNotWhereItCannot) {
   EXPECT_EQ(progress.stages, 1);
   EXPECT_EQ(progress.last, progress.total);
   EXPECT_FALSE(progress.backwards);
+  EXPECT_THAT(progress.parts, testing::ElementsAre("draft", "views-16", "draft"));
 
   const auto json = nlohmann::json::parse(tradeoff_json(tradeoff));
   EXPECT_EQ(json.at("settings").at(0).at("measured").at("heldout").at("clipped_rms").at("value"), draft.clipped.value);
@@ -102,10 +105,13 @@ TEST(Tradeoff, FitsEachSettingWithEachDraw) {
       EXPECT_EQ(journal.known(settings[k])->clipped.pooled, m.runs[static_cast<std::size_t>(draw)].clipped.pooled);
     }
   }
+  const std::vector<std::string> named{"draft, fit 1 of 2", "errors-given, fit 1 of 2", "draft, fit 2 of 2", "errors-given, fit 2 of 2"};
+  EXPECT_EQ(progress.parts, named);
   for (TradeoffSetting& setting : settings) setting.options.draw = 0;
   const Tradeoff again = measure_tradeoff(small_session(folder), settings, 2, &journal, progress);
   EXPECT_EQ(tradeoff.known_before, 0u);
   EXPECT_EQ(again.known_before, 4u);
+  EXPECT_EQ(progress.parts, named);  // nothing more
   EXPECT_EQ(again.measurements[1].clipped.value, tradeoff.measurements[1].clipped.value);
   const auto json = nlohmann::json::parse(tradeoff_json(tradeoff));
   EXPECT_EQ(json.at("settings").at(0).at("measured").at("draws").size(), 2u);
