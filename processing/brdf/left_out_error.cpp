@@ -21,17 +21,6 @@ void normalise(std::vector<double>& log_weight) {
   for (double& w : log_weight) w /= sum;
 }
 
-SquaredError squared_error(const ChannelValues& predicted, const Observation& sample, int channels, double clip) {
-  SquaredError error;
-  for (std::size_t c = 0; c < static_cast<std::size_t>(channels); ++c) {
-    const double measured = std::max(0.0, static_cast<double>(sample.reflectance[c]));
-    const double difference = std::min(clip, predicted[c]) - std::min(clip, measured);
-    const double of_roots = std::sqrt(std::max(0.0, predicted[c])) - std::sqrt(measured);
-    error += {difference * difference, of_roots * of_roots};
-  }
-  return error;
-}
-
 SquaredError left_out_error(const Mixture& mixture, const std::vector<PreparedBrdf>& prepared, std::span<const Observation> samples, int channels, double clip) {
   const std::size_t count = mixture.materials.size();
   std::vector<ChannelValues> predicted(samples.size() * count);
@@ -60,6 +49,17 @@ SquaredError left_out_error(const Mixture& mixture, const std::vector<PreparedBr
 }
 
 }  // namespace
+
+SquaredError squared_error(const ChannelValues& predicted, const Observation& sample, int channels, double clip) {
+  SquaredError error;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(channels); ++c) {
+    const double measured = std::max(0.0, static_cast<double>(sample.reflectance[c]));
+    const double difference = std::min(clip, predicted[c]) - std::min(clip, measured);
+    const double of_roots = std::sqrt(std::max(0.0, predicted[c])) - std::sqrt(measured);
+    error += {difference * difference, of_roots * of_roots};
+  }
+  return error;
+}
 
 SquaredError& SquaredError::operator+=(const SquaredError& other) {
   clipped += other.clipped;

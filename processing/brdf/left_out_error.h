@@ -12,6 +12,9 @@ struct SquaredError {
   SquaredError& operator+=(const SquaredError& other);
 };
 
+// Of one sample, summed over channels.
+SquaredError squared_error(const ChannelValues& predicted, const Observation& sample, int channels, double clip);
+
 // The 99.9th percentile of the lumitexels' reflectances.
 double clip_level(const Observations& observations, const LumitexelList& lumitexels);
 

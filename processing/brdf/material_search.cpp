@@ -19,6 +19,14 @@ constexpr std::size_t kMostJudges = 20'000;         // lumitexels: ten times as 
 constexpr const char *kMaterials = "materials", *kErrors = "errors", *kFamily = "family", *kLobeShapes = "lobe shapes";  // as choices are called
 constexpr int kMostExtra = 8;                        // materials beyond those wanted that splitting may make
 
+// Who have not learnt; where they are fewer than the learners, and most that came near a mirror reflection among these, the learners themselves.
+LumitexelList judges(const Observations& observations, const LumitexelList& selection) {
+  const LumitexelList usable = with_samples(observations, kFewestSamples);
+  LumitexelList others;
+  std::set_difference(usable.begin(), usable.end(), selection.begin(), selection.end(), std::back_inserter(others));
+  return others.size() < selection.size() ? selection : thinned(others, kMostJudges);
+}
+
 // While materials are told apart they all have a lobe: what a matte whole hides, a part may show.
 MaterialSearch search_with(ErrorSource errors, const Observations& observations, const LumitexelList& selection,
                            const ClusterOptions& options, const std::function<void(int)>& report) {
@@ -34,7 +42,7 @@ MaterialSearch search_with(ErrorSource errors, const Observations& observations,
   const MaterialFit whole = fit_material(samples_of(observations, selection), observations.channels, nullptr, search.fit);
   search.mixture = split_materials(whole, observations, selection, most, search.fit);
   maximise_expectation(search.mixture, observations, selection, search.fit, {kSearchRounds, kSearchSettled});
-  merge_materials(search.mixture, observations, selection, {options.materials, search.fit}, report);
+  search.choices = merge_materials(search.mixture, observations, selection, {options.materials, search.fit, judges(observations, selection)}, report);
   return search;
 }
 
@@ -91,14 +99,6 @@ MaterialSearch adapted(const Clustering& before, const Observations& observation
   return search;
 }
 
-// Who have not learnt; where they are fewer than the learners, and most that came near a mirror reflection among these, the learners themselves.
-LumitexelList judges(const Observations& observations, const LumitexelList& selection) {
-  const LumitexelList usable = with_samples(observations, kFewestSamples);
-  LumitexelList others;
-  std::set_difference(usable.begin(), usable.end(), selection.begin(), selection.end(), std::back_inserter(others));
-  return others.size() < selection.size() ? selection : thinned(others, kMostJudges);
-}
-
 // Of searches that differ in `of`, each called by what `name_of` says of it.
 template <typename Name>
 MaterialSearch best_of(const std::string& of, std::vector<MaterialSearch> searches, Name name_of, const Observations& observations,
@@ -132,7 +132,8 @@ MaterialSearch found_anew(const Observations& observations, const LumitexelList&
   MaterialSearch cautious = best_of(kErrors, {search(ErrorSource::Given), std::move(labels)}, errors_of, observations, selection, Claim::Better);
   // Labels and estimates tell the same materials apart.
   const Claim claim = cautious.errors == ErrorSource::Labels ? Claim::Efficient : Claim::Better;
-  estimated.choices = cautious.choices;
+  std::copy_if(cautious.choices.begin(), cautious.choices.end(), std::back_inserter(estimated.choices),
+               [](const Choice& choice) { return choice.of == kErrors; });
   return best_of(kErrors, {std::move(cautious), std::move(estimated)}, errors_of, observations, selection, claim);
 }
 

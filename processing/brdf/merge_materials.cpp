@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <span>
 
 #include "processing/brdf/estimate_error.h"
-#include "processing/brdf/left_out_error.h"
+#include "processing/brdf/choose_materials.h"
 #include "processing/brdf/misfit.h"
 #include "processing/brdf/shared_brightness.h"
 
@@ -185,58 +184,38 @@ void apply(const Merge& merge, Mixture& mixture) {
   mixture.share.erase(mixture.share.begin() + static_cast<std::ptrdiff_t>(merge.pair.second));
 }
 
-// A stage of merging, and what left-out samples say of it, per lumitexel.
-struct Candidate {
-  Mixture mixture;
-  std::vector<SquaredError> errors;
-};
-
-// candidates: from many materials to one.
-std::size_t fewest_that_predict(const std::vector<Candidate>& candidates) {
-  const SquaredError scale = total_error(candidates.back().errors);
-  std::vector<std::vector<double>> errors;
-  std::size_t best = 0;
-  std::vector<double> totals;
-  for (const Candidate& candidate : candidates) {
-    errors.push_back(relative_errors(candidate.errors, scale));
-    totals.push_back(std::accumulate(errors.back().begin(), errors.back().end(), 0.0));
-    if (totals.back() < totals[best]) best = totals.size() - 1;
-  }
-  for (std::size_t i = candidates.size(); i-- > best;) {
-    if (excess_in_standard_errors(errors[i], errors[best]) <= kStandardErrors) return i;
-  }
-  return best;
-}
+int size_of(const Mixture& mixture) { return static_cast<int>(mixture.materials.size()); }
 
 void merge_until(int materials, bool stop_where_needed, Mixture& mixture, const Observations& observations,
-                 const LumitexelList& lumitexels, const MaterialFitOptions& fit, const std::function<void(int)>& after) {
+                 const LumitexelList& lumitexels, const MaterialFitOptions& fit, const std::function<void(const Mixture&)>& after) {
   Responsibilities r = responsibilities(mixture, observations, lumitexels);
-  while (static_cast<int>(mixture.materials.size()) > std::max(1, materials)) {
+  while (size_of(mixture) > std::max(1, materials)) {
     const std::optional<Merge> merge = cheapest_merge(mixture, observations, lumitexels, r, stop_where_needed, fit);
     if (!merge) break;
     apply(*merge, mixture);
     r = maximise_expectation(mixture, observations, lumitexels, fit, {kRounds, kSettled, false});
-    after(static_cast<int>(mixture.materials.size()));
+    after(mixture);
   }
 }
 
 }  // namespace
 
-Responsibilities merge_materials(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
-                                 const MergeOptions& options, const std::function<void(int)>& report) {
-  const bool chosen = options.materials == 0;
-  if (chosen && !options.fit.estimate_error) {
-    const double clip = clip_level(observations, lumitexels);
-    std::vector<Candidate> candidates{{mixture, left_out_errors(mixture, observations, lumitexels, clip)}};
-    merge_until(1, false, mixture, observations, lumitexels, options.fit, [&](int left) {
-      candidates.push_back({mixture, left_out_errors(mixture, observations, lumitexels, clip)});
-      report(left);
-    });
-    mixture = candidates[fewest_that_predict(candidates)].mixture;
-  } else {
-    merge_until(options.materials, chosen, mixture, observations, lumitexels, options.fit, report);
+std::vector<Choice> merge_materials(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
+                                    const MergeOptions& options, const std::function<void(int)>& report) {
+  const bool automatic = options.materials == 0;
+  if (!automatic || options.fit.estimate_error) {
+    merge_until(options.materials, automatic, mixture, observations, lumitexels, options.fit, [&](const Mixture& merged) { report(size_of(merged)); });
   }
-  return responsibilities(mixture, observations, lumitexels);
+  if (!automatic) return {};
+  std::vector<Mixture> candidates{mixture};
+  merge_until(1, false, mixture, observations, lumitexels, options.fit, [&](const Mixture& merged) {
+    candidates.push_back(merged);
+    report(size_of(merged));
+  });
+  const Presumed presumed = options.fit.estimate_error ? Presumed::Many : Presumed::Few;
+  const ChosenMaterials chosen = choose_materials(candidates, presumed, observations, lumitexels, options.judges.empty() ? lumitexels : options.judges);
+  mixture = candidates[chosen.candidate];
+  return chosen.choices;
 }
 
 }  // namespace lumitexel

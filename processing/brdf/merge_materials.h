@@ -2,30 +2,32 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
+#include "processing/brdf/choice.h"
 #include "processing/brdf/mixture.h"
 
 namespace lumitexel {
 
-// How many materials `materials = 0` leaves. Where error models are estimated and to be believed, evidence decides: a pair is merged
+// How many materials `materials = 0` leaves, of those that merging passes, is for texels to say (choose_materials.h). Where error models are
+// given, few are presumed. Where they are estimated, and to be believed, what evidence asks for is, and there are no more: a pair is merged
 // unless keeping it apart gains both
 //   2 * independence * gain > ln(n) for each parameter of one material (the Bayesian information criterion, tempered as in
 //   fit_material.h), and
 //   kLeastGain of log likelihood for each sample of the pair: a difference too small to see is none, however many samples prove it.
 // The gain is measured with the pair's common error model, so that materials must differ in what they look like, not in how well
-// they are explained; and it must be there, too, if lumitexels may differ by a common factor (shared_brightness.h). Where the error model is given, and only stands in for causes unknown, left-out samples decide
-// (left_out_error.h): the fewest materials that predict them no worse than any other number does, within kStandardErrors of the paired
-// difference.
+// they are explained; and it must be there, too, if lumitexels may differ by a common factor (shared_brightness.h).
 inline constexpr double kLeastGain = 0.02;
-inline constexpr double kStandardErrors = 1.0;
 
 struct MergeOptions {
   int materials = 0;  // merge until so many are left; 0: for as long as the criterion wants
   MaterialFitOptions fit;
+  LumitexelList judges = {};  // who say what texels miss; none: the lumitexels themselves
 };
 
-// `mixture` should have settled. Greedy: always the pair whose merging loses least likelihood, then the mixture settles again.
-Responsibilities merge_materials(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
-                                 const MergeOptions& options, const std::function<void(int)>& report);
+// `mixture` should have settled. Greedy: always the pair whose merging loses least likelihood, then the mixture settles again. Returns what was
+// said of the number. report: called with the number of materials after each merge.
+std::vector<Choice> merge_materials(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
+                                    const MergeOptions& options, const std::function<void(int)>& report);
 
 }  // namespace lumitexel

@@ -1,0 +1,16 @@
+// How well a mixture's materials predict samples that a texel was not shown, once each texel has its own mixture of them: what the finished
+// model does (project_weights.h). Left out of the choice of its material and of its weights; materials have learnt from other lumitexels,
+// where there are enough.
+#pragma once
+
+#include "processing/brdf/left_out_error.h"
+
+namespace lumitexel {
+
+// One entry for each of `asked`, summed over its samples: every fourth at a time is predicted from the others, by the most probable material's
+// basis (material_basis.h, without neighbours on the surface) and a prior that `learners` say (choose_prior). Lumitexels with one sample count as zero.
+// clip: as of left_out_errors. The same bits for any number of threads.
+std::vector<SquaredError> projected_errors(const Mixture& mixture, const Observations& observations, const LumitexelList& learners,
+                                           const LumitexelList& asked, double clip);
+
+}  // namespace lumitexel
