@@ -253,6 +253,16 @@ std::string layout_text(const LayoutSummary& layout) {
   return text;
 }
 
+std::string stages_table(const std::vector<StageCost>& stages) {
+  int width = 0;
+  for (const StageCost& stage : stages) width = std::max(width, static_cast<int>(stage.name.size()));
+  std::string text = line("%-*s %8s %9s\n", width + 2, "Stage", "seconds", "peak MB");
+  for (const StageCost& stage : stages) {
+    text += line("  %-*s %8.2f %9.0f\n", width, stage.name.c_str(), stage.seconds, static_cast<double>(stage.peak_bytes) / 1e6);
+  }
+  return text;
+}
+
 std::string fit_text(const FitSettings& settings, const FitOptions& options, const FitSummary& summary) {
   std::string text = line("%s: %zu materials, %zu lumitexels, %zu samples (%.1f a lumitexel; %zu lumitexels have none)\n",
                           settings.out.c_str(), summary.texels_by_material.size(), summary.lumitexels, summary.samples,
@@ -267,11 +277,7 @@ std::string fit_text(const FitSettings& settings, const FitOptions& options, con
   text += indirect_line(summary);
   text += rms_table(summary);
   text += outlier_line(summary.outliers);
-  text += "Stage                             seconds   peak MB\n";
-  for (const StageCost& stage : summary.stages) {
-    text += line("  %-31s %8.2f %9.0f\n", stage.name.c_str(), stage.seconds, static_cast<double>(stage.peak_bytes) / 1e6);
-  }
-  return text;
+  return text + stages_table(summary.stages);
 }
 
 CommandResult fit_command(const FitSettings& settings, CommandContext& context) {

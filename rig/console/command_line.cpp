@@ -1,12 +1,45 @@
 #include "rig/console/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
+#include <sstream>
 #include <vector>
 
 namespace lumitexel {
+namespace {
+
+template <typename Number>
+std::optional<Number> number_in(const std::string& text) {
+  Number number{};
+  const char* const end = text.data() + text.size();
+  const auto [read, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc() || read != end) return std::nullopt;
+  return number;
+}
+
+// CLI11's own would say "not in range" of what is no number, and let NaN pass.
+template <typename Number>
+CLI::Validator within(Number least, Number most, const std::string& allowed) {
+  const std::string kind = std::is_integral_v<Number> ? "a whole number " : "a number ";
+  const auto check = [=](const std::string& text) {
+    const std::optional<Number> number = number_in<Number>(text);
+    return number && *number >= least && *number <= most ? std::string() : "expected " + kind + allowed + ", got '" + text + "'";
+  };
+  return {check, allowed};
+}
+
+template <typename Number>
+std::string from_to(Number least, Number most) {
+  std::ostringstream text;
+  text << "from " << least << " to " << most;
+  return text.str();
+}
+
+}  // namespace
 
 CommandOption& CommandOption::required() {
   option_.required();
@@ -34,17 +67,18 @@ CommandOption& CommandOption::one_each_time() {
 }
 
 CommandOption& CommandOption::range(int least, int most) {
-  option_.check(CLI::Range(least, most));
+  option_.check(within(least, most, from_to(least, most)));
   return *this;
 }
 
 CommandOption& CommandOption::range(double least, double most) {
-  option_.check(CLI::Range(least, most));
+  option_.check(within(least, most, from_to(least, most)));
   return *this;
 }
 
 CommandOption& CommandOption::positive() {
-  option_.check(CLI::PositiveNumber);
+  constexpr double kLeast = std::numeric_limits<double>::denorm_min(), kMost = std::numeric_limits<double>::max();
+  option_.check(within(kLeast, kMost, "above 0"));
   return *this;
 }
 

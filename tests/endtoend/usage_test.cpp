@@ -20,6 +20,13 @@ void expect_refused(const std::string& arguments, const std::vector<std::string>
   for (const std::string& part : parts) EXPECT_THAT(run.errors, HasSubstr(part)) << arguments;
 }
 
+// By the option parser, which adds a line that points to the help.
+void expect_value_refused(const std::string& arguments, const std::string& start) {
+  const ProgramRun run = run_program(arguments);
+  EXPECT_EQ(run.exit_code, 2) << arguments;
+  EXPECT_THAT(run.errors, testing::StartsWith(start));
+}
+
 std::string help_of(const std::string& command) {
   const ProgramRun run = run_program(command + " --help");
   EXPECT_EQ(run.exit_code, 0) << command;
@@ -71,6 +78,19 @@ TEST(Usage, AWrongValueIsAnsweredWithItsOptionAndTheRightOnes) {
   expect_refused("tradeoff S --materials many", {"--materials: 'many'", "or auto"});
   expect_refused("tradeoff S --materials auto --only paper", {"--materials"});
   expect_refused("experiment --only x", {"--only: 'x'", "'even, Gaussian noise'"});
+}
+
+TEST(Usage, AWrongNumberIsAnsweredWithTheRightOnes) {
+  for (const std::string wrong : {"4", "-1", "two", "1.5", "nan"}) {
+    expect_value_refused("fit S --out M --lobes " + wrong, "--lobes: expected a whole number from 0 to 3, got '" + wrong + "'");
+  }
+  for (const std::string wrong : {"0", "1.5", "nan", "inf", "0.5x"}) {
+    expect_value_refused("fit S --out M --method paper --intensity-weight " + wrong,
+                         "--intensity-weight: expected a number from 0.001 to 1, got '" + wrong + "'");
+  }
+  for (const std::string wrong : {"0", "nan", "inf"}) {
+    expect_value_refused("simulate R --for " + wrong, "--for: expected a number above 0, got '" + wrong + "'");
+  }
 }
 
 TEST(Usage, OldNamesOfOptionsStillAct) {
