@@ -3,8 +3,8 @@
 // A model fitted to the samples as photographed has taken up that light where it goes with a lumitexel's own reflection. What goes
 // otherwise with the lamp is left in its residuals, and there the predicted light is sought: of both, what a factor on the lumitexel's
 // prediction would explain is taken away, channel by channel, and what remains of the residuals is regressed on what remains of the light, by the
-// given error model with outliers counting less. Predicted light scatters, as few paths find it (three quarters of what differs between a
-// lumitexel's samples on oracle_a); by how much is known, and does not count as light.
+// given error model with outliers counting less. Predicted light scatters, as few paths find it (on oracle_a most of what differs between a
+// lumitexel's samples); by how much is known, and does not count as light.
 // Fits have taken up more than a factor, which makes the slope too small; bounces that nobody follows make it too large. It is asked on the mesh's
 // normals, before others are fitted: a second time would cost all that follows once more.
 #pragma once

@@ -36,7 +36,7 @@ using Cells = std::map<std::pair<std::uint32_t, std::uint16_t>, Cell>;  // by bl
 // What a fit to some of the photographs makes of the others. A left-out sample below its surface is predicted to be black.
 class Arm {
  public:
-  Arm(const CalibratedSession& session, const FitInputs& inputs, const Clustering& materials, const LumitexelSet& learnt,
+  Arm(const CalibratedSession& session, const FitInputs& inputs, const MaterialsBefore& materials, const LumitexelSet& learnt,
       const Observations& observations, const LumitexelSet& left_out)
       : left_out_(left_out) {
     FitOptions options = inputs.options;
@@ -45,7 +45,7 @@ class Arm {
     FitSummary summary;
     StageTimer timer;
     NoProgress quiet;
-    reflectance_ = fit_reflectance({inputs.atlas, learnt, observations, options, inputs.error}, {&materials, true}, "", model_, summary, timer, quiet);
+    reflectance_ = fit_reflectance({inputs.atlas, learnt, observations, options, inputs.error}, materials, "", model_, summary, timer, quiet);
     for (const ModelMaterial& material : model_.materials) prepared_.emplace_back(material.basis.begin(), material.basis.end());
     for (const View& view : session.views) eyes_.push_back(view.camera_in_world());
   }
@@ -123,7 +123,7 @@ void judge(const CalibratedSession& session, const FitInputs& inputs, const Clus
   if (learnt.samples() == 0 || left_out.samples() == 0) return;
   const Observations observations = observe(session, learnt);
   if (!can_learn(observations)) return;
-  const Arm on_mesh(session, inputs, materials, learnt, observations, left_out);
+  const Arm on_mesh(session, inputs, {&materials, false}, learnt, observations, left_out);
 
   LumitexelSet turned = learnt, left_out_turned = left_out;
   const FittedNormals fitted = on_mesh.normals(session, learnt, inputs, median_reflectance(observations));
@@ -131,7 +131,7 @@ void judge(const CalibratedSession& session, const FitInputs& inputs, const Clus
   turn(fitted.normal, left_out_turned);
   const Observations observations_turned = observe(session, turned);
   if (!can_learn(observations_turned)) return;
-  const Arm on_fitted(session, inputs, materials, turned, observations_turned, left_out_turned);
+  const Arm on_fitted(session, inputs, {&materials, true}, turned, observations_turned, left_out_turned);
 
   std::size_t number = 0;
   const auto channels = static_cast<std::size_t>(left_out.channels);

@@ -15,6 +15,7 @@ NormalsWorth trial(const NormalPatch& patch) {
   const Observations observations = observe(patch.session, patch.lumitexels);
   FitOptions options = FitOptions::preset("draft");
   options.materials = 1;
+  options.learning_lumitexels = options.final_lumitexels = 500;  // enough for one material, in half the time
   const ErrorModel error = error_model(observations, options);
   const FitInputs inputs{atlas, patch.lumitexels, observations, options, error};
   Model model;
