@@ -1,6 +1,7 @@
 #include "processing/brdf/choose_materials.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 
 #include "processing/brdf/error_choice.h"
@@ -13,11 +14,11 @@ constexpr const char* kNumber = "number of materials";
 constexpr std::size_t kMostAsked = 5000;  // judges: each is projected four times for every candidate
 
 // Of a chain of comparisons, those that a reader needs.
-std::vector<Choice> last_taken_and_last(const std::vector<Choice>& choices) {
+std::vector<Choice> last_taken_and_nearest_refused(const std::vector<Choice>& choices) {
   std::vector<Choice> kept;
-  const auto taken = std::find_if(choices.rbegin(), choices.rend(), [](const Choice& choice) { return choice.taken; });
-  if (taken != choices.rend()) kept.push_back(*taken);
-  if (!choices.empty() && !choices.back().taken) kept.push_back(choices.back());
+  const auto after = std::find_if(choices.rbegin(), choices.rend(), [](const Choice& choice) { return choice.taken; }).base();
+  if (after != choices.begin()) kept.push_back(*std::prev(after));
+  if (after != choices.end()) kept.push_back(*after);
   return kept;
 }
 
@@ -35,7 +36,7 @@ ChosenMaterials choose_materials(const std::vector<Mixture>& candidates, Presume
   if (presumed == Presumed::Few) std::reverse(predictors.begin(), predictors.end());
   std::vector<Choice> choices;
   const std::size_t best = best_predictor(kNumber, predictors, Claim::Richer, choices);
-  return {presumed == Presumed::Few ? candidates.size() - 1 - best : best, last_taken_and_last(choices)};
+  return {presumed == Presumed::Few ? candidates.size() - 1 - best : best, last_taken_and_nearest_refused(choices)};
 }
 
 }  // namespace lumitexel

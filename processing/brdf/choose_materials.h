@@ -20,7 +20,7 @@ enum class Presumed {
 
 struct ChosenMaterials {
   std::size_t candidate = 0;
-  std::vector<Choice> choices;  // the last that was taken, and the last that was not; none where there is nothing to choose
+  std::vector<Choice> choices;  // the last that was taken, and of those refused in its favour the nearest to it; none where there is nothing to choose
 };
 
 // candidates: of the same learners, from many materials to few. judges: lumitexels that have not learnt, where there are enough.

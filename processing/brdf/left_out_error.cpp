@@ -54,8 +54,8 @@ SquaredError squared_error(const ChannelValues& predicted, const Observation& sa
   SquaredError error;
   for (std::size_t c = 0; c < static_cast<std::size_t>(channels); ++c) {
     const double measured = std::max(0.0, static_cast<double>(sample.reflectance[c]));
-    const double difference = std::min(clip, predicted[c]) - std::min(clip, measured);
-    const double of_roots = std::sqrt(std::max(0.0, predicted[c])) - std::sqrt(measured);
+    const double difference = std::min(predicted[c], clip) - std::min(clip, measured);
+    const double of_roots = std::sqrt(std::max(predicted[c], 0.0)) - std::sqrt(measured);  // the first argument is what a NaN comes out of
     error += {difference * difference, of_roots * of_roots};
   }
   return error;

@@ -8,8 +8,8 @@
 #include <optional>
 #include <span>
 
-#include "processing/brdf/estimate_error.h"
 #include "processing/brdf/choose_materials.h"
+#include "processing/brdf/estimate_error.h"
 #include "processing/brdf/misfit.h"
 #include "processing/brdf/shared_brightness.h"
 

@@ -20,7 +20,7 @@ namespace lumitexel {
 inline constexpr double kLeastGain = 0.02;
 
 struct MergeOptions {
-  int materials = 0;  // merge until so many are left; 0: for as long as the criterion wants
+  int materials = 0;  // merge until so many are left; 0: as many as texels say
   MaterialFitOptions fit;
   LumitexelList judges = {};  // who say what texels miss; none: the lumitexels themselves
 };

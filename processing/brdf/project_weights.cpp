@@ -32,7 +32,7 @@ std::vector<TexelPrior> candidate_priors() {
 
 // The inverse, or where bases cannot be told apart the pseudo-inverse: what the samples' own predictions need of it is known all the same.
 BasisMatrix covariance_of(const BasisMatrix& matrix, bool rank_deficient) {
-  if (rank_deficient) return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(matrix).pseudoInverse();
+  if (rank_deficient) return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(matrix).pseudoInverse();  // of any size: compiled once
   return matrix.ldlt().solve(BasisMatrix::Identity(matrix.rows(), matrix.cols()));
 }
 

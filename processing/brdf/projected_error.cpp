@@ -1,12 +1,13 @@
 #include "processing/brdf/projected_error.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "processing/brdf/material_basis.h"
 #include "processing/brdf/misfit.h"
-#include "processing/brdf/ordered_sum.h"
 #include "processing/brdf/prepared_brdf.h"
 #include "processing/brdf/project_weights.h"
 
@@ -51,8 +52,10 @@ std::size_t most_probable(const std::vector<Material>& materials, std::span<cons
 }
 
 void choose_priors(const Observations& observations, const LumitexelList& learners, std::vector<Material>& materials) {
+  std::vector<std::size_t> label(learners.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, label.size(), [&](std::size_t l) { label[l] = most_probable(materials, observations.of(learners[l])); });
   std::vector<LumitexelList> members(materials.size());
-  for (const std::size_t i : learners) members[most_probable(materials, observations.of(i))].push_back(i);
+  for (std::size_t l = 0; l < label.size(); ++l) members[label[l]].push_back(learners[l]);
   for (std::size_t k = 0; k < materials.size(); ++k) {
     materials[k].prior = choose_prior(observations, thinned(members[k], kMostForPrior), materials[k].basis).prior;
   }
@@ -81,7 +84,7 @@ std::vector<SquaredError> projected_errors(const Mixture& mixture, const Observa
   std::vector<Material> materials = materials_of(mixture, observations);
   choose_priors(observations, learners, materials);
   std::vector<SquaredError> errors(asked.size());
-  for_each_block(asked.size(), [&](std::size_t l) {
+  oneapi::tbb::parallel_for(std::size_t{0}, asked.size(), [&](std::size_t l) {
     const auto samples = observations.of(asked[l]);
     if (samples.size() >= 2) errors[l] = projected_error(materials, samples, observations.channels, clip);
   });

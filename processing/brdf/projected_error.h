@@ -1,6 +1,6 @@
-// How well a mixture's materials predict samples that a texel was not shown, once each texel has its own mixture of them: what the finished
-// model does (project_weights.h). Left out of the choice of its material and of its weights; materials have learnt from other lumitexels,
-// where there are enough.
+// How well a mixture's materials predict samples that a texel was not shown, once each texel has its own mixture of them, much as in the finished
+// model (project_weights.h; that one may have fewer functions, more lobes, no prior). Left out of the choice of its material and of its weights;
+// materials have learnt, and priors were chosen, from other lumitexels, where there are enough.
 #pragma once
 
 #include "processing/brdf/left_out_error.h"

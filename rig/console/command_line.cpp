@@ -12,22 +12,26 @@
 namespace lumitexel {
 namespace {
 
+// Decimal; CLI11 would take 0100 for an octal number.
 template <typename Number>
 std::optional<Number> number_in(const std::string& text) {
   Number number{};
-  const char* const end = text.data() + text.size();
-  const auto [read, error] = std::from_chars(text.data(), end, number);
+  const char *begin = text.data(), *const end = begin + text.size();
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') ++begin;
+  const auto [read, error] = std::from_chars(begin, end, number);
   if (error != std::errc() || read != end) return std::nullopt;
   return number;
 }
 
-// CLI11's own would say "not in range" of what is no number, and let NaN pass.
+// CLI11's own would say "not in range" of what is no number, and let NaN pass. Leaves the text as CLI11 reads it.
 template <typename Number>
 CLI::Validator within(Number least, Number most, const std::string& allowed) {
-  const std::string kind = std::is_integral_v<Number> ? "a whole number " : "a number ";
-  const auto check = [=](const std::string& text) {
+  const std::string kind = std::is_integral_v<Number> ? "a whole number " : "a finite number ";
+  const auto check = [=](std::string& text) {
     const std::optional<Number> number = number_in<Number>(text);
-    return number && *number >= least && *number <= most ? std::string() : "expected " + kind + allowed + ", got '" + text + "'";
+    if (!number || !(*number >= least && *number <= most)) return "expected " + kind + allowed + ", got '" + text + "'";
+    if constexpr (std::is_integral_v<Number>) text = std::to_string(*number);
+    return std::string();
   };
   return {check, allowed};
 }
@@ -67,7 +71,7 @@ CommandOption& CommandOption::one_each_time() {
 }
 
 CommandOption& CommandOption::range(int least, int most) {
-  option_.check(within(least, most, from_to(least, most)));
+  option_.transform(within(least, most, from_to(least, most)));
   return *this;
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <string>
 
 #include "processing/brdf/cluster_materials.h"
 #include "tests/bench/machine.h"
@@ -84,10 +85,13 @@ int main(int argc, char** argv) {
   using namespace lumitexel;
   CLI::App app("Number of materials found on objects of one and of three materials, 100 lumitexels each");
   int seeds = 100;
+  std::string only;
   app.add_option("--seeds", seeds)->check(CLI::Range(1, 100000))->capture_default_str();
+  app.add_option("--only", only, "Objects whose description holds this");
   CLI11_PARSE(app, argc, argv);
   std::printf("%s\n", machine_line().c_str());
   for (const Case& c : kCases) {
+    if (std::string(c.name).find(only) == std::string::npos) continue;
     std::map<std::size_t, int> counts;
     for (int seed = 1; seed <= seeds; ++seed) ++counts[materials_found(c, static_cast<unsigned>(seed))];
     std::printf("%-34s right %3d of %d; found", c.name, counts[static_cast<std::size_t>(c.materials)], seeds);

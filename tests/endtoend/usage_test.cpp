@@ -86,10 +86,11 @@ TEST(Usage, AWrongNumberIsAnsweredWithTheRightOnes) {
   }
   for (const std::string wrong : {"0", "1.5", "nan", "inf", "0.5x"}) {
     expect_value_refused("fit S --out M --method paper --intensity-weight " + wrong,
-                         "--intensity-weight: expected a number from 0.001 to 1, got '" + wrong + "'");
+                         "--intensity-weight: expected a finite number from 0.001 to 1, got '" + wrong + "'");
   }
+  for (const char* decimal : {"08", "+8"}) expect_refused("fit S --out M --draw " + std::string(decimal), {"SESSION: S does not exist"});
   for (const std::string wrong : {"0", "nan", "inf"}) {
-    expect_value_refused("simulate R --for " + wrong, "--for: expected a number above 0, got '" + wrong + "'");
+    expect_value_refused("simulate R --for " + wrong, "--for: expected a finite number above 0, got '" + wrong + "'");
   }
 }
 

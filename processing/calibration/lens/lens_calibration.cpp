@@ -57,7 +57,7 @@ std::string unusable(const BoardSighting& sighting) {
   for (const Landmark& l : sighting.landmarks) {
     for (const Eigen::Vector3d& x : l.x_in_board) spread += (x.head<2>() - mean) * (x.head<2>() - mean).transpose();
   }
-  const Eigen::Vector2d axes = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Eigen::MatrixXd(spread)).eigenvalues();
+  const Eigen::Vector2d axes = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Eigen::MatrixXd(spread)).eigenvalues();  // of any size: compiled once
   constexpr double kThin = 1e-4;  // squared: a hundredth as broad as long
   return axes[0] > kThin * axes[1] ? "" : "its points lie on one line";
 }

@@ -128,11 +128,21 @@ TEST(ChooseMaterials, OneCandidateIsNoChoice) {
   EXPECT_TRUE(chosen.choices.empty());
 }
 
-// More materials than wanted, one of them with a BRDF that is no number.
+// Not even where it is presumed.
 TEST(ChooseMaterials, WhatIsNoNumberIsNeverKept) {
-  Brdf broken = kBlue;
+  Brdf broken = kRed;
   broken.diffuse[0] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(choose({mixture_of({kRed, broken}, {0.5, 0.5}), mixture_of({kRed}, {1.0})}, shaded(1)).candidate, 1u);
+  for (const Presumed presumed : {Presumed::Few, Presumed::Many}) {
+    EXPECT_EQ(choose({mixture_of({broken, broken}, {0.5, 0.5}), mixture_of({kRed}, {1.0})}, shaded(1), presumed).candidate, 1u);
+  }
+}
+
+TEST(SquaredErrorOfASample, IsNoNumberWhereThePredictionIsNone) {
+  Observation sample;
+  sample.reflectance = {0.5f, 0.5f, 0.5f};
+  const SquaredError error = squared_error({0.5, std::numeric_limits<double>::quiet_NaN(), 0.5}, sample, 3, 1.0);
+  EXPECT_TRUE(std::isnan(error.clipped));
+  EXPECT_TRUE(std::isnan(error.root));
 }
 
 double error_of_roots(const Observations& observations) {
@@ -168,13 +178,15 @@ TEST(ProjectedErrors, ALumitexelOfOneSampleCountsAsZero) {
 TEST(ProjectedErrors, HaveTheSameBitsForAnyNumberOfThreads) {
   const Observations observations = shaded(2);
   const LumitexelList all = all_of(observations);
-  std::vector<double> totals;
+  std::vector<std::vector<SquaredError>> errors;
   for (const std::size_t threads : {1, 2, 4}) {
     const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);
-    totals.push_back(total_error(projected_errors(shades()[0], observations, all, all, 1.0)).root);
+    errors.push_back(projected_errors(shades()[0], observations, all, all, 1.0));
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      EXPECT_EQ(errors.back()[i].root, errors.front()[i].root) << threads << " threads, lumitexel " << i;
+      EXPECT_EQ(errors.back()[i].clipped, errors.front()[i].clipped) << threads << " threads, lumitexel " << i;
+    }
   }
-  EXPECT_EQ(totals[1], totals[0]);
-  EXPECT_EQ(totals[2], totals[0]);
 }
 
 }  // namespace

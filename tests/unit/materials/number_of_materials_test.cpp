@@ -137,8 +137,7 @@ TEST(NumberOfMaterials, MergingUndoesWhatSplittingOverdid) {
       merge_materials(mixture, observations, all, options, [](int) {});
       two += mixture.materials.size() == 2;
     }
-    // Left-out samples decide where the error model is given: within one standard error, so that now and then they keep one too many.
-    EXPECT_GE(two, estimated ? kSeeds : kSeeds - 1) << (estimated ? "estimated" : "given");
+    EXPECT_EQ(two, kSeeds) << (estimated ? "estimated" : "given");
   }
 }
 
