@@ -45,7 +45,7 @@ std::vector<ExperimentRow> experiment_settings() {
 
 ExperimentTally tally(const ExperimentRow& row) {
   ExperimentTally sum;
-  std::vector<double> worst_exponent, worst_diffuse, exponent, diffuse, bayes, normal;
+  std::vector<double> worst_exponent, worst_diffuse, exponent, diffuse, exponent_unlabelled, diffuse_unlabelled, bayes, normal;
   for (const FiveMaterialsScore& s : row.scores) {
     ++sum.seeds;
     sum.five += s.found == 5;
@@ -56,6 +56,8 @@ ExperimentTally tally(const ExperimentRow& row) {
     worst_diffuse.push_back(s.worst_diffuse);
     exponent.push_back(s.squared_exponent);
     diffuse.push_back(s.squared_diffuse);
+    exponent_unlabelled.push_back(s.squared_exponent_unlabelled);
+    diffuse_unlabelled.push_back(s.squared_diffuse_unlabelled);
     bayes.push_back(s.bayes_accuracy - s.accuracy);
     normal.push_back(s.normal_accuracy - s.accuracy);
   }
@@ -63,6 +65,8 @@ ExperimentTally tally(const ExperimentRow& row) {
   sum.worst_diffuse = median(worst_diffuse);
   sum.exponent_over_bound = std::sqrt(mean(exponent));
   sum.diffuse_over_bound = std::sqrt(mean(diffuse));
+  sum.exponent_over_unlabelled = std::sqrt(mean(exponent_unlabelled));
+  sum.diffuse_over_unlabelled = std::sqrt(mean(diffuse_unlabelled));
   sum.short_of_bayes = mean(bayes);
   sum.short_of_normal = mean(normal);
   return sum;

@@ -1,16 +1,15 @@
 #include "processing/brdf/experiment/five_materials.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <numeric>
-#include <random>
 #include <stdexcept>
 
+#include "processing/brdf/experiment/dice.h"
 #include "processing/brdf/experiment/label_bound.h"
-#include "processing/brdf/normal_equations.h"
+#include "processing/brdf/experiment/parameter_bound.h"
 
 namespace lumitexel {
 namespace {
@@ -19,20 +18,6 @@ constexpr double kDiffuse[] = {0.15, 0.3, 0.1};
 constexpr double kExponents[] = {36.2, 42.2, 48.2, 54.2, 60.2};
 constexpr double kUnevenShares[] = {0.10, 0.55, 0.06, 0.25, 0.04};
 constexpr double kLeastCosine = 0.1, kLeastViewCosine = 0.42;
-
-// std::uniform_real_distribution differs between libraries; this does not.
-class Dice {
- public:
-  explicit Dice(std::uint64_t seed) : engine_(seed) {}
-  double uniform(double low, double high) { return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
-  double normal() {
-    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform(0.0, 1.0)));
-    return radius * std::cos(2.0 * std::numbers::pi * uniform(0.0, 1.0));
-  }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 Brdf material(double exponent) {
   Brdf brdf;
@@ -68,32 +53,6 @@ void measure(const Brdf& truth, const FiveMaterialsOptions& options, Dice& dice,
   }
 }
 
-// The smallest errors that any unbiased estimator could have, for one material.
-struct Bound {
-  double log_exponent = 0;
-  std::array<double, 3> diffuse{};
-};
-
-Bound cramer_rao(const FiveMaterials& world, int k) {
-  std::vector<FitSample> samples;
-  for (std::size_t i = 0; i < world.label.size(); ++i) {
-    if (world.label[i] != k) continue;
-    for (const Observation& sample : world.observations.of(i)) samples.push_back({&sample, 1.0, static_cast<std::uint32_t>(i)});
-  }
-  const Brdf& truth = world.truth[static_cast<std::size_t>(k)];
-  const BrdfParameters layout(truth.family, 3, true, {widest_bounds(truth.family)});
-  ErrorModel error(world.relative_sigma, 1e-12);
-  error.freedom = ErrorModel::kGaussian;
-  BrdfProblem problem(samples, layout, error, false);
-  const Eigen::VectorXd at = layout.from(truth);
-  problem.reweight(at);
-  const Eigen::MatrixXd covariance = problem.linearise(at).matrix.inverse();
-  Bound bound;
-  bound.log_exponent = std::sqrt(covariance(layout.log_shape(0, 0), layout.log_shape(0, 0)));
-  for (int c = 0; c < 3; ++c) bound.diffuse[static_cast<std::size_t>(c)] = std::sqrt(covariance(layout.diffuse(c), layout.diffuse(c)));
-  return bound;
-}
-
 // Materials in the order of their exponents: which is whose. Matte ones come first.
 std::vector<std::size_t> by_exponent(const Clustering& clustering) {
   std::vector<std::size_t> order(clustering.materials.size());
@@ -104,6 +63,15 @@ std::vector<std::size_t> by_exponent(const Clustering& clustering) {
   };
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return exponent(a) < exponent(b); });
   return order;
+}
+
+// The same errors in the wider bounds of who is told no labels.
+void add_unlabelled(FiveMaterialsScore& result, std::size_t k, const MaterialBound& labelled, const MaterialBound& unlabelled) {
+  const double narrower = labelled.log_exponent / unlabelled.log_exponent;
+  result.squared_exponent_unlabelled += std::pow(result.log_exponent_error[k] * narrower, 2) / 5.0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    result.squared_diffuse_unlabelled += std::pow(result.diffuse_error[k][c] * labelled.diffuse[c] / unlabelled.diffuse[c], 2) / 15.0;
+  }
 }
 
 }  // namespace
@@ -146,6 +114,12 @@ FiveMaterialsScore score(const FiveMaterials& world, const Clustering& clusterin
   result.worst_exponent = result.worst_diffuse = std::numeric_limits<double>::infinity();
   if (clustering.materials.size() != world.truth.size()) return result;
   const std::vector<std::size_t> order = by_exponent(clustering);
+  const std::vector<MaterialBound> labelled = bound_with_labels(world);
+  std::vector<MaterialBound> unlabelled;
+  if (world.options.gaussian) {
+    unlabelled = bound_without_labels(world);
+    result.squared_exponent_unlabelled = result.squared_diffuse_unlabelled = 0.0;
+  }
   std::vector<int> truth_of(order.size());
   result.all_found = true;
   result.fitted.resize(order.size());
@@ -153,7 +127,7 @@ FiveMaterialsScore score(const FiveMaterials& world, const Clustering& clusterin
   for (std::size_t k = 0; k < order.size(); ++k) {
     truth_of[order[k]] = static_cast<int>(k);
     const Brdf& fitted = clustering.materials[order[k]].model.brdf;
-    const Bound bound = cramer_rao(world, static_cast<int>(k));
+    const MaterialBound& bound = labelled[k];
     result.fitted[k] = fitted;
     const double exponent = fitted.lobes.empty() ? 0.0 : std::exp(fitted.lobes[0][0].log_shape);
     const double half_gap = 0.5 * (kExponents[1] - kExponents[0]);
@@ -166,6 +140,7 @@ FiveMaterialsScore score(const FiveMaterials& world, const Clustering& clusterin
       result.diffuse_error[k][c] = (fitted.diffuse[c] - kDiffuse[c]) / bound.diffuse[c];
       result.squared_diffuse += std::pow(result.diffuse_error[k][c], 2) / 15.0;
     }
+    if (!unlabelled.empty()) add_unlabelled(result, k, bound, unlabelled[k]);
   }
   double right = 0.0;
   for (std::size_t l = 0; l < world.label.size(); ++l) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "processing/brdf/cluster_materials.h"
@@ -39,6 +40,9 @@ struct FiveMaterialsScore {
   double worst_diffuse = 0;            // of the fifteen kd
   double squared_exponent = 0;         // mean over the five of (error / Cramer-Rao bound)^2, in ln N
   double squared_diffuse = 0;          // mean over the fifteen
+  // The same over the bound for who is told no labels; NaN but for Gaussian noise, whose bound is known.
+  double squared_exponent_unlabelled = std::numeric_limits<double>::quiet_NaN();
+  double squared_diffuse_unlabelled = std::numeric_limits<double>::quiet_NaN();
   // The same apart, in bounds, by material and channel; all zero unless five were found.
   std::array<double, 5> log_exponent_error{};
   std::array<ChannelValues, 5> diffuse_error{};
@@ -47,7 +51,7 @@ struct FiveMaterialsScore {
   double accuracy = 0, bayes_accuracy = 0, normal_accuracy = 0;
 };
 
-// The bound is that of Gaussian noise of the same size with all labels known and one shape for all channels.
+// The bounds are those of parameter_bound.h.
 FiveMaterialsScore score(const FiveMaterials& world, const Clustering& clustering);
 
 }  // namespace lumitexel
