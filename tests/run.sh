@@ -4,7 +4,7 @@ set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
 config/setup/build.sh
-config/setup/install_checker.sh gltf_validator
+config/setup/install_checker.sh gltf_validator materialx_library
 [ -d "${LUMITEXEL_SHARED_DATA:-../shared/data}" ] ||
   echo "== tests: ../shared/data is not there (set LUMITEXEL_SHARED_DATA); tests that need it SKIP, and say so"
 echo "== tests"

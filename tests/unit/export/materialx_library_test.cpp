@@ -1,0 +1,89 @@
+// MaterialX's own library on what is written: read, validated, made a shader of.
+#include <gtest/gtest.h>
+
+#include "processing/export/export_model.h"
+#include "rig/whole_file.h"
+#include "tests/unit/export/outside_checker.h"
+#include "tests/unit/plain_models.h"
+#include "tests/unit/temporary_folder.h"
+
+namespace lumitexel {
+namespace {
+
+const std::string kLibrary = "materialx_library";
+
+Model sphere() { return model_of(sphere_mesh(24, 12), 16, 8, diffuse_brdf(0.2, 0.1, 0.05)); }
+
+void write(const Model& model, const std::filesystem::path& folder) {
+  NoProgress quiet;
+  export_model(model, ExportFormat::Materialx, folder, quiet);
+}
+
+// The checker has to name what was damaged, so that no other failure passes for it.
+void expect_refused(const std::filesystem::path& folder, const std::string& because) {
+  const CheckerAnswer answer = checked_by(kLibrary, folder);
+  EXPECT_FALSE(answer.passed) << answer.said;
+  EXPECT_NE(answer.said.find(because), std::string::npos) << answer.said;
+}
+
+void expect_refused_with(const std::string& text, const std::string& instead, const std::string& because) {
+  const TemporaryFolder folder;
+  write(sphere(), folder / "mtlx");
+  std::string document = read_whole_file(folder / "mtlx/model.mtlx");
+  const std::size_t at = document.find(text);
+  ASSERT_NE(at, std::string::npos) << "the export no longer writes " << text;
+  write_whole_file(folder / "mtlx/model.mtlx", document.replace(at, text.size(), instead));
+  expect_refused(folder / "mtlx", because);
+}
+
+TEST(MaterialxLibrary, MakesAShaderOfIt) {
+  SKIP_WITHOUT_CHECKER(kLibrary);
+  const TemporaryFolder folder;
+  write(sphere(), folder / "mtlx");
+  const CheckerAnswer answer = checked_by(kLibrary, folder / "mtlx");
+  EXPECT_TRUE(answer.passed) << answer.said;
+}
+
+TEST(MaterialxLibrary, AlsoWithNormals) {
+  SKIP_WITHOUT_CHECKER(kLibrary);
+  Model model = sphere();
+  for (std::size_t t = 0; t < model.normal.data.size(); ++t) model.normal.data[t] = t % 3 == 0 ? 1.0f : 0.0f;
+  const TemporaryFolder folder;
+  write(model, folder / "mtlx");
+  const CheckerAnswer answer = checked_by(kLibrary, folder / "mtlx");
+  EXPECT_TRUE(answer.passed) << answer.said;
+  EXPECT_NE(answer.said.find("normal.png"), std::string::npos) << answer.said;
+}
+
+TEST(MaterialxLibrary, RefusesANodeThatNobodyDefines) {
+  SKIP_WITHOUT_CHECKER(kLibrary);
+  expect_refused_with("<multiply name=\"specular\" type=\"color3\">",
+                      "<multiplied name=\"specular\" type=\"color3\"/><multiply name=\"other\" type=\"color3\">",
+                      "nothing defines node specular, a multiplied");
+}
+
+TEST(MaterialxLibrary, RefusesAnInputThatTheNodeLacks) {
+  SKIP_WITHOUT_CHECKER(kLibrary);
+  expect_refused_with("\"metallic\"", "\"metalness\"", "Input 'metalness' doesn't match declaration");
+}
+
+TEST(MaterialxLibrary, RefusesAnOutputThatTheGraphLacks) {
+  SKIP_WITHOUT_CHECKER(kLibrary);
+  expect_refused_with("output=\"base_out\"", "output=\"lost_out\"", "Invalid port connection");
+}
+
+TEST(MaterialxLibrary, RefusesAColourSpaceThatNobodyDefines) {
+  SKIP_WITHOUT_CHECKER(kLibrary);
+  expect_refused_with("\"srgb_texture\"", "\"srgb_picture\"", "nothing defines colour space srgb_picture");
+}
+
+TEST(MaterialxLibrary, RefusesATextureThatIsNotThere) {
+  SKIP_WITHOUT_CHECKER(kLibrary);
+  const TemporaryFolder folder;
+  write(sphere(), folder / "mtlx");
+  std::filesystem::remove(folder / "mtlx/roughness.png");
+  expect_refused(folder / "mtlx", "there is no texture roughness.png");
+}
+
+}  // namespace
+}  // namespace lumitexel
