@@ -8,4 +8,4 @@ config/setup/install_checker.sh gltf_validator materialx_library
 [ -d "${LUMITEXEL_SHARED_DATA:-../shared/data}" ] ||
   echo "== tests: ../shared/data is not there (set LUMITEXEL_SHARED_DATA); tests that need it SKIP, and say so"
 echo "== tests"
-ctest --preset release -j "$(nproc)"
+ctest --preset release -j "$(($(nproc) + 1))"  # one more: some wait for devices
