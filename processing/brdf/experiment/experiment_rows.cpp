@@ -56,6 +56,7 @@ ExperimentTally tally(const ExperimentRow& row) {
     worst_diffuse.push_back(s.worst_diffuse);
     exponent.push_back(s.squared_exponent);
     diffuse.push_back(s.squared_diffuse);
+    sum.under_paper_at_bound += s.chance_at_bound;
     exponent_unlabelled.push_back(s.squared_exponent_unlabelled);
     diffuse_unlabelled.push_back(s.squared_diffuse_unlabelled);
     bayes.push_back(s.bayes_accuracy - s.accuracy);

@@ -120,6 +120,7 @@ FiveMaterialsScore score(const FiveMaterials& world, const Clustering& clusterin
     unlabelled = bound_without_labels(world);
     result.squared_exponent_unlabelled = result.squared_diffuse_unlabelled = 0.0;
   }
+  result.chance_at_bound = chance_within(kPaperError, unlabelled.empty() ? labelled : unlabelled, world.truth);
   std::vector<int> truth_of(order.size());
   result.all_found = true;
   result.fitted.resize(order.size());

@@ -18,6 +18,7 @@ struct FiveMaterialsOptions {
   double outliers = 0;         // share of samples, all channels alike, that are multiplied by a number from 0 to 3
 };
 inline constexpr double kMostOutlierFactor = 3.0;
+inline constexpr double kPaperError = 0.002;  // of every N and kd: what the paper reached
 
 struct FiveMaterials {
   Observations observations;
@@ -43,6 +44,8 @@ struct FiveMaterialsScore {
   // The same over the bound for who is told no labels; NaN but for Gaussian noise, whose bound is known.
   double squared_exponent_unlabelled = std::numeric_limits<double>::quiet_NaN();
   double squared_diffuse_unlabelled = std::numeric_limits<double>::quiet_NaN();
+  // Of all twenty within kPaperError for who reaches the bound: the one without labels for Gaussian noise, else the one with them.
+  double chance_at_bound = 0;
   // The same apart, in bounds, by material and channel; all zero unless five were found.
   std::array<double, 5> log_exponent_error{};
   std::array<ChannelValues, 5> diffuse_error{};

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "processing/brdf/experiment/dice.h"
 #include "processing/brdf/normal_equations.h"
@@ -147,6 +148,16 @@ std::vector<MaterialBound> bound_without_labels(const FiveMaterials& world) {
     bounds.push_back(bound_in(covariance, layout, static_cast<Eigen::Index>(k) * layout.size()));
   }
   return bounds;
+}
+
+double chance_within(double share, const std::vector<MaterialBound>& bound, const std::vector<Brdf>& truth) {
+  const auto within = [&](double relative_sigma) { return std::erf(share / relative_sigma / std::numbers::sqrt2); };
+  double chance = 1.0;
+  for (std::size_t k = 0; k < bound.size(); ++k) {
+    chance *= within(bound[k].log_exponent);
+    for (std::size_t c = 0; c < 3; ++c) chance *= within(bound[k].diffuse[c] / truth[k].diffuse[c]);
+  }
+  return chance;
 }
 
 }  // namespace lumitexel

@@ -25,4 +25,8 @@ std::vector<MaterialBound> bound_with_labels(const FiveMaterials& world);
 // over noise and labels, here over draws of both on the world's own geometries: which knows the bound to about 1 %.
 std::vector<MaterialBound> bound_without_labels(const FiveMaterials& world);
 
+// The chance that all of N and kd come out within a share of their truth for an unbiased, normally distributed estimator that reaches the bound, its
+// errors taken for independent.
+double chance_within(double share, const std::vector<MaterialBound>& bound, const std::vector<Brdf>& truth);
+
 }  // namespace lumitexel

@@ -66,6 +66,15 @@ TEST(FiveMaterials, WithoutLabelsLessIsToBeKnownUntilNoiseIsSmall) {
   EXPECT_NEAR(quiet.exponent, 1.0, kDrawsKnowIt);
 }
 
+TEST(FiveMaterials, TheChanceAtTheBoundIsThatOfIndependentErrors) {
+  const std::vector<Brdf> truth = five_materials_truth();
+  std::vector<MaterialBound> bound(5, {1e-9, {1e-9, 1e-9, 1e-9}});
+  EXPECT_NEAR(chance_within(0.002, bound, truth), 1.0, 1e-12);
+  bound[1].log_exponent = 0.002;
+  bound[4].diffuse[2] = 0.001 * truth[4].diffuse[2];
+  EXPECT_NEAR(chance_within(0.002, bound, truth), 0.682689 * 0.954500, 1e-6);  // within one sigma, and within two
+}
+
 // Uniform noise rules materials out. 2,000 labels are known to 0.008, the difference of two such much better.
 TEST(FiveMaterials, TheTrueLawOfTheNoiseLabelsBetterThanANormalOne) {
   for (const double outliers : {0.0, 0.02}) {
