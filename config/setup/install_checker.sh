@@ -9,8 +9,10 @@ for name in "$@"; do
     echo "== $name: no npm here; the tests that need it SKIP"
     continue
   fi
+  # npm writes the second file last, and would begin by throwing away what is there.
+  if cmp -s "$here/$name/package-lock.json" "$target/package-lock.json" && [ -e "$target/node_modules/.package-lock.json" ]; then continue; fi
   mkdir -p "$target"
   cp "$here/$name/package.json" "$here/$name/package-lock.json" "$target/"
-  # A peer is what a package needs in a browser's page; here nothing is shown.
+  # The peer of MaterialX's package, three, is for drawing in a browser.
   npm ci --silent --omit=peer --prefix "$target" || echo "== $name: npm cannot install it; the tests that need it SKIP"
 done

@@ -72,6 +72,8 @@ nlohmann::json number(double value) { return std::isfinite(value) ? nlohmann::js
 
 nlohmann::json score_json(int seed, const FiveMaterialsScore& s) {
   return {{"seed", seed}, {"materials", s.found}, {"all_found", s.all_found},
+          {"squared_exponent_error_in_unlabelled_bounds", number(s.squared_exponent_unlabelled)},
+          {"squared_diffuse_error_in_unlabelled_bounds", number(s.squared_diffuse_unlabelled)},
           {"worst_exponent", number(s.worst_exponent)}, {"worst_diffuse", number(s.worst_diffuse)},
           {"exponent_errors_in_bounds", s.log_exponent_error}, {"diffuse_errors_in_bounds", s.diffuse_error},
           {"accuracy", s.accuracy}, {"bayes_accuracy", s.bayes_accuracy}, {"normal_noise_accuracy", s.normal_accuracy}};
@@ -92,32 +94,34 @@ nlohmann::json row_json(const ExperimentRow& row, int first_seed) {
   return json;
 }
 
-std::string ratio_text(double ratio) {
-  char text[20];
-  if (!std::isfinite(ratio)) return "     -";
-  std::snprintf(text, sizeof text, "%6.2f", ratio);
+// With a dash for what there is not, as wide.
+std::string cell(double value, int width, int decimals, const char* unit = "") {
+  char text[40];
+  if (std::isfinite(value)) std::snprintf(text, sizeof text, "%*.*f%s", width, decimals, value, unit);
+  else std::snprintf(text, sizeof text, "%*s%*s", width, "-", static_cast<int>(std::string(unit).size()), "");
   return text;
 }
 
 std::string row_text(const ExperimentRow& row) {
   const ExperimentTally t = tally(row);
-  char line[200];
-  std::snprintf(line, sizeof line, "%-30s %3d   %3d    %6.3f %%  %6.3f %%  %s  %s   %s  %s    %3d of %5.1f  %6.2f %%   %6.2f %%\n", row.name.c_str(),
-                t.five, t.found, 100 * t.worst_exponent, 100 * t.worst_diffuse, ratio_text(t.exponent_over_bound).c_str(),
-                ratio_text(t.diffuse_over_bound).c_str(), ratio_text(t.exponent_over_unlabelled).c_str(),
-                ratio_text(t.diffuse_over_unlabelled).c_str(), t.under_paper, t.under_paper_at_bound, 100 * t.short_of_bayes, 100 * t.short_of_normal);
-  return line;
+  char counts[80];
+  std::snprintf(counts, sizeof counts, "%-30s %3d   %3d   ", row.name.c_str(), t.five, t.found);
+  return counts + cell(100 * t.worst_exponent, 7, 3, " %") + cell(100 * t.worst_diffuse, 8, 3, " %") + cell(t.exponent_over_bound, 8, 2) +
+         cell(t.diffuse_over_bound, 7, 2) + cell(t.exponent_over_unlabelled, 8, 2) + cell(t.diffuse_over_unlabelled, 7, 2) +
+         cell(t.under_paper, 7, 0) + " of" + cell(t.under_paper_at_bound, 6, 1) + cell(100 * t.short_of_bayes, 8, 2, " %") +
+         cell(100 * t.short_of_normal, 8, 2, " %") + '\n';
 }
 
 constexpr const char* kTableHead =
     "Five materials of one kd, exponents 36.2 to 60.2, 46,000 samples, 5 % noise (section 11 of the paper)\n"
-    "                              five  found   worst N  worst kd  error over bound  over that of   all within   labels short of\n"
-    "                                                median    median       N      kd   none labelled  0.2 %           Bayes     normal\n";
+    "                              five  found   worst N  worst kd  error over the bound for       all within  labels short of\n"
+    "                                                median    median  labels known  labels unknown   0.2 %         Bayes    normal\n"
+    "                                                                      N     kd       N     kd\n";
 constexpr const char* kTableFoot =
-    "Bound: Cramer and Rao's for Gaussian noise of this size and labels known; none labelled: the same for who is told no labels (Gaussian noise\n"
-    "alone; of N, of kd). All within 0.2 %: seeds whose twenty numbers are, of as many as for who reaches the bound (none labelled, if there is\n"
-    "one). Labels: mean share rightly labelled, less than who knows the true BRDFs, shares and law of the noise (Bayes), and who knows all that\n"
-    "but takes the noise for normal.\n";
+    "Bound: Cramer and Rao's for Gaussian noise of this size. Labels unknown: for who is told neither labels nor shares, worked out for Gaussian\n"
+    "noise alone. All within 0.2 %: seeds of which all twenty numbers are, and how many they would be for who reaches the bound (labels unknown,\n"
+    "where that is worked out). Labels: mean share rightly labelled, less than who knows the true BRDFs, shares and law of the noise (Bayes), and\n"
+    "who knows all that but takes the noise for normal.\n";
 
 CommandResult experiment_command(const ExperimentSettings& settings, CommandContext& context) {
   std::vector<ExperimentRow> rows = chosen_rows(settings.only);

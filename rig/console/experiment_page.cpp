@@ -32,12 +32,12 @@ std::string table_section(const std::vector<ExperimentRow>& rows) {
   return html::section(
       "All settings",
       "Found: five materials, each exponent nearest to its own truth. Worst N and kd: medians over the seeds of the largest relative error. Error "
-      "over bound: root mean square over seeds and parameters, 1 is Cramér and Rao's bound for Gaussian noise of this size with labels known; unlabelled: the "
-      "same bound for who is told no labels, of Gaussian noise; each of N, kd. Under 0.2 %: seeds whose twenty numbers all are, and how many they "
-      "would be for who reaches the bound (the unlabelled one, if there is one). Labels: "
-      "how much smaller the share rightly labelled is than that of somebody who knows the true BRDFs, shares and law of the noise (Bayes), or all "
-      "that but takes the noise for normal.",
-      html::table({"setting", "found", "worst N, kd", "over bound", "unlabelled", "under 0.2 %", "at the bound", "short of Bayes", "of normal"}, cells));
+      "over bound: root mean square over seeds and parameters, of N and of kd; 1 is Cramér and Rao's bound for Gaussian noise of this size. Labels "
+      "known: for who is told which lumitexel is of which material; unknown: for who is told neither that nor the shares, worked out for Gaussian noise "
+      "alone. Under 0.2 %: seeds of which all twenty numbers are, and how many they would be for who reaches the bound (labels unknown, where that "
+      "is worked out). Short of: how much smaller the share rightly labelled is than that of somebody who knows the true BRDFs, shares and law of the "
+      "noise (Bayes), or all that but takes the noise for normal.",
+      html::table({"setting", "found", "worst N, kd", "labels known", "unknown", "under 0.2 %", "at the bound", "short of Bayes", "of normal"}, cells));
 }
 
 std::string labels_section(const std::vector<ExperimentRow>& rows) {

@@ -5,6 +5,7 @@ const fs = require('fs'), path = require('path'), url = require('url');
 const [modules, folder] = process.argv.slice(2);
 const WORKING_SPACE = 'lin_rec709';  // what the library turns colours into
 const faults = [];
+process.exitCode = 2;  // of a library that lacks one of its files nothing is heard
 
 async function library() {
   const bin = path.resolve(modules, '@needle-tools/materialx/bin');
@@ -38,6 +39,14 @@ function check_nodes(document, target) {
 function check_textures(document) {
   for (const name of textures(document)) {
     if (path.isAbsolute(name) || !fs.existsSync(path.join(folder, name))) faults.push(`there is no texture ${name} beside the document`);
+  }
+}
+
+// Pictures of colour are coded, pictures of numbers are not: a wrong word here, and nothing fails but the colours.
+function check_coding(document) {
+  for (const input of all(document).filter((element) => element.isAInput() && element.getType() === 'filename')) {
+    const expected = input.getParent().getType() === 'color3' ? 'srgb_texture' : '';
+    if (input.getColorSpace() !== expected) faults.push(`${input.getValueString()} is said to be coded as '${input.getColorSpace()}', not '${expected}'`);
   }
 }
 
@@ -83,6 +92,7 @@ async function check(mx) {
   check_validity(document);
   check_nodes(document, generator.getTarget());
   check_textures(document);
+  check_coding(document);
   check_colour_spaces(document, standard);
   const material = material_of(mx, document);
   if (faults.length === 0) {  // of a document that is not valid the generator may not return

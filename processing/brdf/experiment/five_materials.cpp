@@ -82,10 +82,17 @@ std::vector<Brdf> five_materials_truth() {
   return truth;
 }
 
+std::vector<double> material_shares(const FiveMaterials& world) {
+  std::vector<double> shares(world.truth.size(), 0.0);
+  for (const int label : world.label) shares[static_cast<std::size_t>(label)] += 1.0 / static_cast<double>(world.label.size());
+  return shares;
+}
+
 FiveMaterials make_five_materials(std::uint64_t seed, const FiveMaterialsOptions& options) {
   if (options.gaussian && options.outliers > 0.0) throw std::invalid_argument("five materials: outliers come with uniform noise only");
   Dice dice(seed * 7919 + 13);
   FiveMaterials world;
+  world.seed = seed;
   world.options = options;
   world.observations.channels = 3;
   world.relative_sigma = options.noise / std::numbers::sqrt3;

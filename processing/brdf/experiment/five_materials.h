@@ -21,6 +21,7 @@ inline constexpr double kMostOutlierFactor = 3.0;
 inline constexpr double kPaperError = 0.002;  // of every N and kd: what the paper reached
 
 struct FiveMaterials {
+  std::uint64_t seed = 0;
   Observations observations;
   std::vector<int> label;      // of each lumitexel
   std::vector<Brdf> truth;     // exponents 36.2 to 60.2
@@ -33,6 +34,7 @@ struct FiveMaterials {
 FiveMaterials make_five_materials(std::uint64_t seed, const FiveMaterialsOptions& options);
 
 std::vector<Brdf> five_materials_truth();
+std::vector<double> material_shares(const FiveMaterials& world);  // of the lumitexels, as they are in this world
 
 struct FiveMaterialsScore {
   int found = 0;                       // materials
@@ -41,7 +43,7 @@ struct FiveMaterialsScore {
   double worst_diffuse = 0;            // of the fifteen kd
   double squared_exponent = 0;         // mean over the five of (error / Cramer-Rao bound)^2, in ln N
   double squared_diffuse = 0;          // mean over the fifteen
-  // The same over the bound for who is told no labels; NaN but for Gaussian noise, whose bound is known.
+  // The same over the bound for who is told no labels, which is worked out for Gaussian noise alone: NaN for uniform noise, or unless five were found.
   double squared_exponent_unlabelled = std::numeric_limits<double>::quiet_NaN();
   double squared_diffuse_unlabelled = std::numeric_limits<double>::quiet_NaN();
   // Of all twenty within kPaperError for who reaches the bound: the one without labels for Gaussian noise, else the one with them.

@@ -15,8 +15,7 @@ constexpr double kRoundingOfFloat = 2e-7;  // measurements are floats: the edges
 constexpr double kOutlierSpread = 1.0;     // rms of the factor 0 … 3 less one
 
 std::vector<double> log_shares(const FiveMaterials& world) {
-  std::vector<double> shares(world.truth.size(), 0.0);
-  for (const int label : world.label) shares[static_cast<std::size_t>(label)] += 1.0 / static_cast<double>(world.label.size());
+  std::vector<double> shares = material_shares(world);
   for (double& share : shares) share = std::log(share);
   return shares;
 }

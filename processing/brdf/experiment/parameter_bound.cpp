@@ -1,18 +1,18 @@
 #include "processing/brdf/experiment/parameter_bound.h"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "processing/brdf/experiment/dice.h"
+#include "processing/brdf/experiment/mixture_score.h"
 #include "processing/brdf/normal_equations.h"
 #include "processing/brdf/ordered_sum.h"
 
 namespace lumitexel {
 namespace {
 
-constexpr int kDraws = 8;  // of noise and label a lumitexel: 1,300 of the rarest material's 167, for its eight parameters
+constexpr int kDraws = 2;  // of the noise, for each lumitexel as each material
 constexpr std::uint64_t kDrawSeed = 20031101;
 
 BrdfParameters one_shape(const FiveMaterials& world) {
@@ -29,78 +29,70 @@ Eigen::MatrixXd inverse(const Eigen::MatrixXd& information) {
   return information.ldlt().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
 }
 
-// One lumitexel's geometries under one material: all that does not depend on what was measured.
-struct Predictions {
-  std::vector<SampleValues> value;
-  std::vector<SampleSlopes> relative_slope;  // of ln value, a row a channel
-};
-
-Predictions predictions(const BrdfSlopes& model, std::span<const Observation> samples) {
-  Predictions result{std::vector<SampleValues>(samples.size()), std::vector<SampleSlopes>(samples.size())};
-  for (std::size_t s = 0; s < samples.size(); ++s) {
-    model.predict(samples[s].geometry, result.value[s], result.relative_slope[s]);
-    for (int c = 0; c < 3; ++c) result.relative_slope[s].row(c) /= result.value[s][c];
-  }
-  return result;
-}
-
-std::vector<SampleValues> measured(const Predictions& truth, double relative_sigma, Dice& dice) {
+std::vector<SampleValues> with_noise(const PredictedSamples& truth, double relative_sigma, Dice& dice) {
   std::vector<SampleValues> values = truth.value;
   for (SampleValues& value : values) {
-    for (int c = 0; c < 3; ++c) value[c] *= 1.0 + relative_sigma * dice.normal();
+    for (Eigen::Index c = 0; c < value.size(); ++c) value[c] *= 1.0 + relative_sigma * dice.normal();
   }
   return values;
 }
 
-// ln p of the samples under one material up to a constant, and its slope (the noise's size, which grows with the prediction, tells a little, too).
-double log_likelihood(const Predictions& material, const std::vector<SampleValues>& values, double relative_sigma, Eigen::VectorXd& slope) {
-  double sum = 0.0;
-  slope.setZero();
-  for (std::size_t s = 0; s < values.size(); ++s) {
-    for (int c = 0; c < 3; ++c) {
-      const double ratio = values[s][c] / material.value[s][c], off = (ratio - 1.0) / relative_sigma;
-      sum -= std::log(material.value[s][c]) + 0.5 * off * off;
-      slope += (ratio * off / relative_sigma - 1.0) * material.relative_slope[s].row(c).transpose();
+// Of the whole mixture: what there would be to know with labels, and what of it is not there without them.
+struct Information {
+  Eigen::MatrixXd with_labels, missing;
+};
+
+Information& operator+=(Information& a, const Information& b) {
+  a.with_labels += b.with_labels;
+  a.missing += b.missing;
+  return a;
+}
+
+// One lumitexel as material k, which it is with the probability `share`.
+void add_with_labels(const PredictedSamples& material, Eigen::Index first, double share, double relative_sigma, Eigen::MatrixXd& sum) {
+  const double of_a_sample = share * (1.0 / (relative_sigma * relative_sigma) + 2.0);  // 2: the noise's size tells, too
+  for (const SampleSlopes& slope : material.relative_slope) {
+    sum.block(first, first, slope.cols(), slope.cols()) += of_a_sample * slope.transpose() * slope;
+  }
+}
+
+void add_missing(const MixtureScore& score, double weight, Eigen::MatrixXd& sum) {
+  const Eigen::VectorXd mean = score.slope();
+  for (std::size_t k = 0; k < score.probability.size(); ++k) {
+    const double share = weight * score.probability[k];
+    if (share < 1e-12) continue;  // most: a highlight tells its material
+    const Eigen::VectorXd off = score.if_known.col(static_cast<Eigen::Index>(k)) - mean;
+    sum.noalias() += share * off * off.transpose();
+  }
+}
+
+// Whose a lumitexel is says, of the shares, what a draw from a multinomial distribution does.
+void add_of_shares(const std::vector<double>& shares, double lumitexels, Eigen::MatrixXd& sum) {
+  const auto others = static_cast<Eigen::Index>(shares.size()) - 1, first = sum.rows() - others;
+  sum.block(first, first, others, others).array() += lumitexels / shares.back();
+  for (Eigen::Index k = 0; k < others; ++k) sum(first + k, first + k) += lumitexels / shares[static_cast<std::size_t>(k)];
+}
+
+Information information(const FiveMaterials& world, const BrdfParameters& layout) {
+  const std::vector<double> shares = material_shares(world);
+  const auto count = static_cast<Eigen::Index>(shares.size()), own = static_cast<Eigen::Index>(layout.size());
+  std::vector<BrdfSlopes> models;
+  for (const Brdf& brdf : world.truth) models.emplace_back(layout, layout.from(brdf));
+  const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(count * own + count - 1, count * own + count - 1);
+  Information sum = ordered_sum(world.label.size(), Information{zero, zero}, [&](std::size_t i, Information& block) {
+    std::vector<PredictedSamples> materials;
+    for (const BrdfSlopes& model : models) materials.push_back(predicted_samples(model, world.observations.of(i)));
+    Dice dice(kDrawSeed + world.seed * world.label.size() + i);
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+      add_with_labels(materials[k], static_cast<Eigen::Index>(k) * own, shares[k], world.relative_sigma, block.with_labels);
+      for (int draw = 0; draw < kDraws; ++draw) {
+        const auto values = with_noise(materials[k], world.relative_sigma, dice);
+        add_missing(mixture_score(materials, shares, world.relative_sigma, values), shares[k] / kDraws, block.missing);
+      }
     }
-  }
+  });
+  add_of_shares(shares, static_cast<double>(world.label.size()), sum.with_labels);
   return sum;
-}
-
-int drawn_label(const std::vector<double>& shares, Dice& dice) {
-  double left = dice.uniform(0.0, 1.0);
-  int label = 0;
-  for (; label + 1 < static_cast<int>(shares.size()); ++label) {
-    left -= shares[static_cast<std::size_t>(label)];
-    if (left < 0.0) break;
-  }
-  return label;
-}
-
-// The slope of the mixture's ln p for one measured lumitexel: all materials' parameters, then all shares but the last.
-Eigen::VectorXd mixture_score(const std::vector<Predictions>& materials, const std::vector<SampleValues>& values,
-                              const std::vector<double>& shares, double relative_sigma, int parameters) {
-  const auto count = static_cast<int>(materials.size());
-  std::vector<double> logs(materials.size());
-  std::vector<Eigen::VectorXd> slopes(materials.size(), Eigen::VectorXd(parameters));
-  for (std::size_t k = 0; k < materials.size(); ++k) {
-    logs[k] = std::log(shares[k]) + log_likelihood(materials[k], values, relative_sigma, slopes[k]);
-  }
-  const double most = *std::max_element(logs.begin(), logs.end());
-  double total = 0.0;
-  for (double& log : logs) total += (log = std::exp(log - most));
-  Eigen::VectorXd score(count * parameters + count - 1);
-  for (int k = 0; k < count; ++k) score.segment(k * parameters, parameters) = logs[static_cast<std::size_t>(k)] / total * slopes[static_cast<std::size_t>(k)];
-  const double last = logs.back() / total / shares.back();
-  for (int k = 0; k + 1 < count; ++k) {
-    score[count * parameters + k] = logs[static_cast<std::size_t>(k)] / total / shares[static_cast<std::size_t>(k)] - last;
-  }
-  return score;
-}
-
-std::vector<double> shares_of(const FiveMaterials& world) {
-  std::vector<double> shares(world.truth.size(), 0.0);
-  for (const int label : world.label) shares[static_cast<std::size_t>(label)] += 1.0 / static_cast<double>(world.label.size());
-  return shares;
 }
 
 }  // namespace
@@ -126,26 +118,14 @@ std::vector<MaterialBound> bound_with_labels(const FiveMaterials& world) {
 
 std::vector<MaterialBound> bound_without_labels(const FiveMaterials& world) {
   const BrdfParameters layout = one_shape(world);
-  const std::vector<double> shares = shares_of(world);
-  std::vector<BrdfSlopes> models;
-  for (const Brdf& brdf : world.truth) models.emplace_back(layout, layout.from(brdf));
-  const auto unknowns = static_cast<Eigen::Index>(models.size()) * layout.size() + static_cast<Eigen::Index>(models.size()) - 1;
-  const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(unknowns, unknowns);
-  const Eigen::MatrixXd sum = ordered_sum(world.label.size(), zero, [&](std::size_t i, Eigen::MatrixXd& information) {
-    std::vector<Predictions> materials;
-    for (const BrdfSlopes& model : models) materials.push_back(predictions(model, world.observations.of(i)));
-    Dice dice(kDrawSeed + i);
-    for (int draw = 0; draw < kDraws; ++draw) {
-      const auto label = static_cast<std::size_t>(drawn_label(shares, dice));
-      const std::vector<SampleValues> values = measured(materials[label], world.relative_sigma, dice);
-      const Eigen::VectorXd score = mixture_score(materials, values, shares, world.relative_sigma, layout.size());
-      information.noalias() += score * score.transpose() / kDraws;
-    }
-  });
-  const Eigen::MatrixXd covariance = inverse(sum);
-  std::vector<MaterialBound> bounds;
-  for (std::size_t k = 0; k < world.truth.size(); ++k) {
-    bounds.push_back(bound_in(covariance, layout, static_cast<Eigen::Index>(k) * layout.size()));
+  const Information all = information(world, layout);
+  const Eigen::MatrixXd with = inverse(all.with_labels), without = inverse(all.with_labels - all.missing);
+  std::vector<MaterialBound> bounds = bound_with_labels(world);
+  for (std::size_t k = 0; k < bounds.size(); ++k) {
+    const Eigen::Index first = static_cast<Eigen::Index>(k) * layout.size();
+    const MaterialBound told = bound_in(with, layout, first), untold = bound_in(without, layout, first);
+    bounds[k].log_exponent *= untold.log_exponent / told.log_exponent;
+    for (std::size_t c = 0; c < 3; ++c) bounds[k].diffuse[c] *= untold.diffuse[c] / told.diffuse[c];
   }
   return bounds;
 }

@@ -1,5 +1,5 @@
-// How well anybody could know the five materials' parameters: Cramer and Rao's bound, for Gaussian noise of the world's size and one shape for
-// all channels.
+// How well anybody could know the five materials' parameters: Cramer and Rao's bound, for Gaussian noise of the world's size, which is known, and
+// one lobe shape for all channels.
 #pragma once
 
 #include <array>
@@ -15,14 +15,16 @@ struct MaterialBound {
   std::array<double, 3> diffuse{};
 };
 
-// For somebody who is told which lumitexel is of which material. One entry a material.
+// For somebody who is told which lumitexel is of which material. One entry a material. Every material has lumitexels in the world.
 std::vector<MaterialBound> bound_with_labels(const FiveMaterials& world);
 
-// For somebody who is not, nor how many of each there are. The information of the mixture is the mean of the outer product of its score,
+// For somebody who is told neither labels nor shares: the bound above, wider by as much as not knowing them widens it on average over who is whose.
+// By Louis' identity (1982) the information is that with labels less what is missing,
 //
-//   d log p / d theta_k = r_k d log p_k / d theta_k,     r_k: the probability of material k given the lumitexel's samples,
+//   I = sum_i sum_k pi_k I_ik  -  sum_i E[ sum_k r_k (S_k - S)(S_k - S)^T ],     S = sum_k r_k S_k,
 //
-// over noise and labels, here over draws of both on the world's own geometries: which knows the bound to about 1 %.
+// with lumitexel i's share pi_k and information I_ik under material k, its probability r_k given the samples, and mixture_score.h's S_k. The
+// expectation is a mean over draws of the noise, two a lumitexel and material: one world's answer is known to 1 % and less.
 std::vector<MaterialBound> bound_without_labels(const FiveMaterials& world);
 
 // The chance that all of N and kd come out within a share of their truth for an unbiased, normally distributed estimator that reaches the bound, its

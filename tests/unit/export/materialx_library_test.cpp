@@ -26,23 +26,23 @@ void expect_refused(const std::filesystem::path& folder, const std::string& beca
   EXPECT_NE(answer.said.find(because), std::string::npos) << answer.said;
 }
 
-TEST(MaterialxLibrary, MakesAShaderOfIt) {
-  SKIP_WITHOUT_CHECKER(kLibrary);
-  const TemporaryFolder folder;
-  write(sphere(), folder / "mtlx");
-  const CheckerAnswer answer = checked_by(kLibrary, folder / "mtlx");
-  EXPECT_TRUE(answer.passed) << answer.said;
-}
-
-TEST(MaterialxLibrary, AlsoWithNormals) {
-  SKIP_WITHOUT_CHECKER(kLibrary);
-  Model model = sphere();
-  for (std::size_t t = 0; t < model.normal.data.size(); ++t) model.normal.data[t] = t % 3 == 0 ? 1.0f : 0.0f;
+void expect_accepted(const Model& model, const std::vector<std::string>& textures) {
   const TemporaryFolder folder;
   write(model, folder / "mtlx");
   const CheckerAnswer answer = checked_by(kLibrary, folder / "mtlx");
   EXPECT_TRUE(answer.passed) << answer.said;
-  EXPECT_NE(answer.said.find("normal.png"), std::string::npos) << answer.said;
+  EXPECT_NE(answer.said.find("lines of essl"), std::string::npos) << answer.said;
+  for (const std::string& name : textures) EXPECT_NE(answer.said.find(name), std::string::npos) << name << ": " << answer.said;
+}
+
+TEST(MaterialxLibrary, MakesAShaderOfIt) {
+  SKIP_WITHOUT_CHECKER(kLibrary);
+  expect_accepted(sphere(), {"base.png", "specular.png", "specular_factor.png", "roughness.png"});
+}
+
+TEST(MaterialxLibrary, AlsoWithNormals) {
+  SKIP_WITHOUT_CHECKER(kLibrary);
+  expect_accepted(with_own_normals(sphere()), {"base.png", "normal.png"});
 }
 
 struct Damage {
@@ -55,6 +55,9 @@ constexpr Damage kDamages[] = {
     {"\"metallic\"", "\"metalness\"", "Input 'metalness' doesn't match declaration"},
     {"output=\"base_out\"", "output=\"lost_out\"", "Invalid port connection"},
     {"\"srgb_texture\"", "\"srgb_picture\"", "nothing defines colour space srgb_picture"},
+    {" colorspace=\"srgb_texture\"", "", "base.png is said to be coded as '', not 'srgb_texture'"},
+    {"<input name=\"specular\" type=\"float\" nodegraph=\"textures\" output=\"specular_factor_out\"/>", "",
+     "the shader does not sample specular_factor.png"},
 };
 
 // One export for all: it takes longer than the library does.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numeric>
 
 #include "processing/brdf/experiment/label_bound.h"
@@ -37,42 +38,31 @@ TEST(FiveMaterials, TheTruthScoresWithoutError) {
   EXPECT_LT(result.bayes_accuracy, 1.0);
 }
 
-struct Ratio {
-  double exponent = 0, diffuse = 0;
-};
-
-// Of what can be known without labels to what can be with them: means over the materials.
-Ratio without_labels_over_with(const FiveMaterials& world) {
-  const std::vector<MaterialBound> wider = bound_without_labels(world), narrower = bound_with_labels(world);
-  Ratio mean;
-  for (std::size_t k = 0; k < wider.size(); ++k) {
-    mean.exponent += wider[k].log_exponent / narrower[k].log_exponent / 5.0;
-    mean.diffuse += wider[k].diffuse[0] / narrower[k].diffuse[0] / 5.0;
+Clustering moved_truth(const FiveMaterials& world, const std::vector<MaterialBound>& by) {
+  Clustering clustering;
+  for (std::size_t k = 0; k < by.size(); ++k) {
+    Brdf brdf = world.truth[k];
+    for (auto& channel : brdf.lobes[0]) channel.log_shape += by[k].log_exponent;
+    for (std::size_t c = 0; c < 3; ++c) brdf.diffuse[c] -= by[k].diffuse[c];
+    clustering.materials.push_back({{brdf, ErrorModel(world.relative_sigma, 1e-6)}, {}, 0});
   }
-  return mean;
+  clustering.label = world.label;
+  return clustering;
 }
 
-// kd suffers more from not knowing which is which than N does: who saw no highlight knows nothing of N, labelled or not.
-TEST(FiveMaterials, WithoutLabelsLessIsToBeKnownUntilNoiseIsSmall) {
+TEST(FiveMaterials, ErrorsAreCountedInBoundsOfBothKinds) {
   FiveMaterialsOptions options;
   options.gaussian = true;
-  constexpr double kDrawsKnowIt = 0.02;  // the bound is worked out from draws of the noise; seeds differ by as much
-  const Ratio noisy = without_labels_over_with(make_five_materials(1, options));
-  EXPECT_GT(noisy.diffuse, 1.05);
-  EXPECT_GT(noisy.exponent, 1.0);
-  options.noise = 1e-3;  // nineteen lumitexels of twenty tell whose they are
-  const Ratio quiet = without_labels_over_with(make_five_materials(1, options));
-  EXPECT_NEAR(quiet.diffuse, 1.0, 0.5 * (noisy.diffuse - 1.0));
-  EXPECT_NEAR(quiet.exponent, 1.0, kDrawsKnowIt);
-}
-
-TEST(FiveMaterials, TheChanceAtTheBoundIsThatOfIndependentErrors) {
-  const std::vector<Brdf> truth = five_materials_truth();
-  std::vector<MaterialBound> bound(5, {1e-9, {1e-9, 1e-9, 1e-9}});
-  EXPECT_NEAR(chance_within(0.002, bound, truth), 1.0, 1e-12);
-  bound[1].log_exponent = 0.002;
-  bound[4].diffuse[2] = 0.001 * truth[4].diffuse[2];
-  EXPECT_NEAR(chance_within(0.002, bound, truth), 0.682689 * 0.954500, 1e-6);  // within one sigma, and within two
+  FiveMaterials world = make_five_materials(1, options);
+  const FiveMaterialsScore labelled = score(world, moved_truth(world, bound_with_labels(world)));
+  EXPECT_NEAR(labelled.squared_exponent, 1.0, 1e-9);
+  EXPECT_NEAR(labelled.squared_diffuse, 1.0, 1e-9);
+  EXPECT_LT(labelled.squared_diffuse_unlabelled, 0.9);
+  const FiveMaterialsScore unlabelled = score(world, moved_truth(world, bound_without_labels(world)));
+  EXPECT_NEAR(unlabelled.squared_exponent_unlabelled, 1.0, 1e-9);
+  EXPECT_NEAR(unlabelled.squared_diffuse_unlabelled, 1.0, 1e-9);
+  world.options.gaussian = false;  // of uniform noise that bound is not known
+  EXPECT_TRUE(std::isnan(score(world, moved_truth(world, bound_with_labels(world))).squared_exponent_unlabelled));
 }
 
 // Uniform noise rules materials out. 2,000 labels are known to 0.008, the difference of two such much better.
