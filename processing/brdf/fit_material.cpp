@@ -120,27 +120,4 @@ MaterialFit fit_material(FitSamples samples, int channels, const Brdf* start, co
   return best;
 }
 
-MaterialFit fit_best_family(FitSamples samples, int channels, const MaterialFitOptions& options) {
-  std::vector<MaterialFit> fits;
-  std::size_t likeliest = 0;
-  std::vector<double> misfits;
-  for (const BrdfFamily family : {BrdfFamily::Lafortune, BrdfFamily::Ggx, BrdfFamily::Ward}) {
-    MaterialFitOptions own = options;
-    own.family = family;
-    fits.push_back(fit_material(samples, channels, nullptr, own));
-    misfits.push_back(misfit(fits.back().model.brdf, samples, fits.back().model.error));
-    if (misfits.back() < misfits[likeliest]) likeliest = fits.size() - 1;
-  }
-  // One independence for all: that of the likeliest, since what a BRDF leaves unexplained errs together.
-  const double independence = options.estimate_error ? fits[likeliest].model.error.independence : 1.0;
-  std::size_t best = 0;
-  for (std::size_t f = 0; f < fits.size(); ++f) {
-    MaterialFitOptions own = options;
-    own.family = fits[f].model.brdf.family;
-    set_criterion(fits[f], samples, independence, own);
-    if (fits[f].criterion < fits[best].criterion) best = f;
-  }
-  return fits[best];
-}
-
 }  // namespace lumitexel

@@ -41,7 +41,4 @@ MaterialFit fit_material(FitSamples samples, int channels, const Brdf* start, co
 // The options of a fit that keeps the number and kind of lobes of `model`.
 BrdfFitOptions refit_options(const MaterialModel& model, const MaterialFitOptions& options);
 
-// The family whose fit has the lowest criterion, fitted; all are judged with the independence that the likeliest of them shows.
-MaterialFit fit_best_family(FitSamples samples, int channels, const MaterialFitOptions& options);
-
 }  // namespace lumitexel

@@ -13,9 +13,9 @@
 #include <sstream>
 
 #include "drivers/error.h"
-#include "processing/brdf/fit_material.h"
-#include "processing/brdf/mixture.h"
+#include "processing/brdf/cluster_materials.h"
 #include "processing/brdf/select_lumitexels.h"
+#include "processing/fit/reflectance_stage.h"
 #include "processing/image/raster_file.h"
 #include "rig/rig_file.h"
 #include "rig/whole_file.h"
@@ -89,18 +89,31 @@ BrdfValues values_of(const Brdf& brdf) {
   return [brdf](const LobeGeometry& geometry) { return evaluate(brdf, geometry); };
 }
 
-MethodResult measured(const Method& method, FitSamples samples, const BrdfValues& truth, const SeenSphere& sphere) {
+// As `fit --materials 1 --family auto` does it, on all of the sphere.
+MaterialFit automatic_fit(const Observations& observations, const LumitexelList& lumitexels, int most_lobes) {
+  ClusterOptions options;
+  options.materials = 1;
+  options.any_family = true;
+  options.fit.most_lobes = most_lobes;
+  options.fit.error = error_model(observations, {});
+  const Clustering clustering = cluster_materials(observations, lumitexels, options, [](int) {});
+  return {clustering.materials[0].model, clustering.materials[0].fit, 0.0};
+}
+
+MaterialFit fit_of(const Method& method, const Observations& observations, const LumitexelList& lumitexels) {
+  if (!method.family) return automatic_fit(observations, lumitexels, method.lobes);
   MaterialFitOptions options;
   options.most_lobes = method.lobes;
+  options.family = *method.family;
+  options.choose_lobes = false;
+  return fit_material(samples_of(observations, lumitexels), observations.channels, nullptr, options);
+}
+
+MethodResult measured(const Method& method, const Observations& observations, const LumitexelList& lumitexels, const BrdfValues& truth,
+                      const SeenSphere& sphere) {
   MethodResult result;
   const auto start = std::chrono::steady_clock::now();
-  if (method.family) {
-    options.family = *method.family;
-    options.choose_lobes = false;
-    result.fit = fit_material(samples, 3, nullptr, options);
-  } else {
-    result.fit = fit_best_family(samples, 3, options);
-  }
+  result.fit = fit_of(method, observations, lumitexels);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.errors = relative_errors(truth, values_of(result.fit.model.brdf), sphere.heldout);
   return result;
@@ -110,9 +123,8 @@ MaterialResult measured(std::size_t material, const std::vector<KnownMaterial>& 
   const BrdfValues& truth = known[material].values;
   const Observations observations = photographed(truth, sphere, settings.noise, settings.seed + static_cast<unsigned>(material));
   const auto lumitexels = select_lumitexels(observations, static_cast<std::size_t>(settings.selected));
-  const std::vector<FitSample> samples = samples_of(observations, lumitexels);
   MaterialResult result{material, {}, {}};
-  for (const Method& method : methods(settings)) result.by_method.push_back(measured(method, samples, truth, sphere));
+  for (const Method& method : methods(settings)) result.by_method.push_back(measured(method, observations, lumitexels, truth, sphere));
   result.nearest = nearest_materials(result.by_method[0].fit.model.brdf, known);
   return result;
 }
