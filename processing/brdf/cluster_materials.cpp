@@ -11,6 +11,7 @@ namespace {
 // Of log likelihood a sample and round. What is left after the last round is a multiple of its change, and should be small beside one in all.
 constexpr double kFinalSettled = 1e-6;
 constexpr int kFinalRounds = 40;  // of expectation-maximisation
+constexpr int kFinalSteps = 4;    // that are reported: which lobes, settled, lobes anew, labels
 
 std::vector<int> most_probable(const Responsibilities& r) {
   std::vector<int> label(r.lumitexels());
@@ -82,8 +83,8 @@ void set_labels(const std::vector<int>& label, const LumitexelList& all, std::si
 Clustering cluster_materials(const Observations& observations, const LumitexelList& selection, const ClusterOptions& options,
                              const std::function<void(int)>& report) {
   Clustering result;
+  const int steps = clustering_steps(options) - kFinalSteps;
   report(0);
-
   MaterialSearch search = search_for_materials(observations, selection, options, report);
   Mixture& mixture = search.mixture;
   Responsibilities r = responsibilities(mixture, observations, selection);
@@ -99,12 +100,15 @@ Clustering cluster_materials(const Observations& observations, const LumitexelLi
   std::vector<BrdfFit> fits;
   // The search went with one lobe each: more come in here, so that the mixture settles with them.
   if (settled.most_lobes > search.fit.most_lobes) choose_lobes(mixture, observations, selection, r, settled, fits);
+  report(steps + 1);
   const LumitexelList all = with_samples(observations);
   const std::vector<int> label = most_probable(responsibilities(mixture, observations, all));
   const LumitexelList finalists = members_of_all(label, all, mixture.materials.size(), options.final_lumitexels, options.draw);
   r = maximise_expectation(mixture, observations, finalists, settled, {kFinalRounds, kFinalSettled});
   if (settled.estimate_error) settle_with_edges(mixture, observations, finalists, settled, r);
+  report(steps + 2);
   choose_lobes(mixture, observations, finalists, r, settled, fits);
+  report(steps + 3);
   // With their lobes the materials' scales and tails changed.
   if (!mixture.noise.normal()) mixture.noise = choose_noise_shape(mixture, observations, finalists, r);
   // What all is measured against: the best mean prediction, whatever the materials were fitted by.
@@ -117,7 +121,10 @@ Clustering cluster_materials(const Observations& observations, const LumitexelLi
   // The finalists were chosen alike from every material: how common each is, all lumitexels say.
   set_shares(responsibilities(mixture, observations, all), mixture);
   set_labels(most_probable(responsibilities(mixture, observations, all)), all, observations.lumitexels(), result);
+  report(steps + kFinalSteps);
   return result;
 }
+
+int clustering_steps(const ClusterOptions& options) { return search_steps(options) + kFinalSteps; }
 
 }  // namespace lumitexel

@@ -63,8 +63,9 @@ void set_labels(const std::vector<int>& label, const LumitexelList& all, std::si
 // Learns on `selection` (lumitexel indices, ascending): splits into about twice as many materials as wanted (split_materials.h), lets
 // the mixture settle, merges (merge_materials.h), asks each material anew which lobes it needs, and settles on many of each
 // material's members. Materials known before, adapted, stand beside those found so, or in their place. Then labels every lumitexel with its
-// most probable material. report(k) is called with the number of materials so far.
+// most probable material. report is called with the steps done, of clustering_steps.
 Clustering cluster_materials(const Observations& observations, const LumitexelList& selection, const ClusterOptions& options,
                              const std::function<void(int)>& report);
+int clustering_steps(const ClusterOptions& options);
 
 }  // namespace lumitexel

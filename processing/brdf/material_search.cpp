@@ -18,6 +18,7 @@ constexpr double kSearchSettled = 1e-4;              // of log likelihood a samp
 constexpr std::size_t kMostJudges = 20'000;         // lumitexels: ten times as many as the presets but reference learn from
 constexpr const char *kMaterials = "materials", *kErrors = "errors", *kFamily = "family", *kLobeShapes = "lobe shapes";  // as choices are called
 constexpr int kMostExtra = 8;                        // materials beyond those wanted that splitting may make
+constexpr int kStepsBesideMaterials = 2;             // of a search from nothing: the first fit, and what follows the last merge
 
 // Who have not learnt; where they are fewer than the learners, and most that came near a mirror reflection among these, the learners themselves.
 LumitexelList judges(const Observations& observations, const LumitexelList& selection) {
@@ -27,11 +28,19 @@ LumitexelList judges(const Observations& observations, const LumitexelList& sele
   return others.size() < selection.size() ? selection : thinned(others, kMostJudges);
 }
 
+// That splitting makes.
+int most_materials(const ClusterOptions& options) {
+  const int wanted = options.materials > 0 ? options.materials : kMostMaterials;
+  return wanted == 1 ? 1 : std::min(2 * wanted, wanted + kMostExtra);
+}
+
+// Of one search: splits up to the most materials, and merges down from them.
+int steps_from_nothing(const ClusterOptions& options) { return 2 * most_materials(options) + kStepsBesideMaterials; }
+
 // While materials are told apart they all have a lobe: what a matte whole hides, a part may show.
 MaterialSearch search_with(ErrorSource errors, const Observations& observations, const LumitexelList& selection,
                            const ClusterOptions& options, const std::function<void(int)>& report) {
-  const int wanted = options.materials > 0 ? options.materials : kMostMaterials;
-  const int most = wanted == 1 ? 1 : std::min(2 * wanted, wanted + kMostExtra);
+  const int most = most_materials(options);
   MaterialSearch search;
   search.errors = errors;
   search.fit = options.fit;
@@ -40,9 +49,13 @@ MaterialSearch search_with(ErrorSource errors, const Observations& observations,
   search.fit.estimate_error = errors != ErrorSource::Given;
   search.fit.shared_shape = options.lobe_shapes != LobeShapes::Separate;
   const MaterialFit whole = fit_material(samples_of(observations, selection), observations.channels, nullptr, search.fit);
-  search.mixture = split_materials(whole, observations, selection, most, search.fit);
+  report(1);
+  search.mixture = split_materials(whole, observations, selection, most, search.fit, [&](int parts) { report(1 + parts); });
+  report(1 + most);
   maximise_expectation(search.mixture, observations, selection, search.fit, {kSearchRounds, kSearchSettled});
-  search.choices = merge_materials(search.mixture, observations, selection, {options.materials, search.fit, judges(observations, selection)}, report);
+  search.choices = merge_materials(search.mixture, observations, selection, {options.materials, search.fit, judges(observations, selection)},
+                                   [&](int left) { report(1 + 2 * most - left); });
+  report(steps_from_nothing(options));
   return search;
 }
 
@@ -64,11 +77,6 @@ MaterialSearch with_mean_fits(MaterialSearch search, const Observations& observa
   return search;
 }
 
-// What is asked again counts as it is answered then.
-void forget(const std::string& of, std::vector<Choice>& choices) {
-  std::erase_if(choices, [&](const Choice& choice) { return choice.of == of; });
-}
-
 // The lobes that materials known before have already: both are asked for theirs before they are compared.
 void give_lobes(MaterialSearch& search, const Observations& observations, const LumitexelList& selection, const ClusterOptions& options) {
   if (search.fit.most_lobes == options.fit.most_lobes) return;
@@ -82,13 +90,11 @@ MaterialSearch adapted(const Clustering& before, const Observations& observation
   MaterialSearch search;
   search.known_before = true;
   search.errors = before.errors;
-  search.choices = before.choices;
   search.fit = options.fit;
   search.fit.estimate_error = before.fit.estimate_error;
   if (before.fit.mean_fit) search.fit.mean_fit = options.fit.error;
   search.fit.family = before.fit.family;
   search.fit.shared_shape = before.fit.shared_shape;
-  forget(kMaterials, search.choices);
   double members = 0.0;
   for (const FittedMaterial& material : before.materials) members += static_cast<double>(material.members);
   for (const FittedMaterial& material : before.materials) {
@@ -125,7 +131,12 @@ const char* shapes_of(const MaterialSearch& search) { return to_string(search.fi
 // From nothing.
 MaterialSearch found_anew(const Observations& observations, const LumitexelList& selection, const ClusterOptions& options,
                           const std::function<void(int)>& report) {
-  const auto search = [&](ErrorSource errors) { return search_with(errors, observations, selection, options, report); };
+  int before = 0;
+  const auto search = [&](ErrorSource errors) {
+    MaterialSearch found = search_with(errors, observations, selection, options, [&](int steps) { report(before + steps); });
+    before += steps_from_nothing(options);
+    return found;
+  };
   if (options.errors == ErrorSource::Given || options.errors == ErrorSource::Estimated) return search(options.errors);
   MaterialSearch estimated = search(ErrorSource::Estimated), labels = with_mean_fits(estimated, observations, selection, options);
   if (options.errors == ErrorSource::Labels) return labels;
@@ -153,8 +164,6 @@ MaterialSearch with_separate_shapes(MaterialSearch search, const Observations& o
 MaterialSearch with_lobes_asked_for(MaterialSearch search, const Observations& observations, const LumitexelList& selection,
                                     const ClusterOptions& options) {
   if (options.fit.most_lobes == 0) return search;
-  forget(kFamily, search.choices);
-  forget(kLobeShapes, search.choices);
   if (options.any_family) {
     std::vector<MaterialSearch> families{std::move(search)};
     for (const BrdfFamily family : {BrdfFamily::Lafortune, BrdfFamily::Ggx, BrdfFamily::Ward}) {
@@ -171,6 +180,12 @@ MaterialSearch with_lobes_asked_for(MaterialSearch search, const Observations& o
 }
 
 }  // namespace
+
+int search_steps(const ClusterOptions& options) {
+  if (options.before.clustering != nullptr && !options.before.anew) return 0;
+  const bool by_both_errors = options.errors == ErrorSource::Auto;
+  return (by_both_errors ? 2 : 1) * steps_from_nothing(options);
+}
 
 void choose_lobes(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels, const Responsibilities& r,
                   const MaterialFitOptions& options, std::vector<BrdfFit>& fits) {

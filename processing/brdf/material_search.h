@@ -21,9 +21,11 @@ struct MaterialSearch {
 // wanted (split_materials.h), lets the mixture settle, merges (merge_materials.h). Auto: with the given error model and with estimated ones. Where there is more than one candidate, materials known before among them, error_choice.h decides.
 // Then, where options ask for it, the same materials are fitted with lobes of each other family, and with a shape for each channel;
 // error_choice.h decides again. Materials known before keep theirs.
-// report: as of cluster_materials.
+// report: called with the steps done, of search_steps.
 MaterialSearch search_for_materials(const Observations& observations, const LumitexelList& selection, const ClusterOptions& options,
                                     const std::function<void(int)>& report);
+
+int search_steps(const ClusterOptions& options);
 
 // Each material's lobes, asked for anew: while splitting and merging all had those of the whole. fits: one a material.
 void choose_lobes(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels, const Responsibilities& r,

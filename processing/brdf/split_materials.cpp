@@ -99,7 +99,7 @@ Mixture mixture_of(const std::vector<Part>& parts) {
 }  // namespace
 
 Mixture split_materials(const MaterialFit& whole, const Observations& observations, const LumitexelList& lumitexels, int most,
-                        const MaterialFitOptions& options) {
+                        const MaterialFitOptions& options, const std::function<void(int)>& report) {
   std::vector<Part> parts{{whole.model, lumitexels}};
   std::vector<std::optional<Split>> splits{best_split(parts[0], observations, options)};
   while (static_cast<int>(parts.size()) < most) {
@@ -111,6 +111,7 @@ Mixture split_materials(const MaterialFit& whole, const Observations& observatio
     const Split split = *splits[chosen];
     parts[chosen] = split.first;
     parts.push_back(split.second);
+    report(static_cast<int>(parts.size()));
     if (static_cast<int>(parts.size()) == most) break;
     splits[chosen] = best_split(parts[chosen], observations, options);
     splits.push_back(best_split(parts.back(), observations, options));

@@ -11,6 +11,16 @@ namespace {
 
 using SumsByStage = std::array<ErrorSums, std::size(kFitStages)>;
 
+struct Comparison {
+  SumsByStage all, measured;  // measured: the surface that has samples of its own
+  void add(const Comparison& other) {
+    for (std::size_t stage = 0; stage < all.size(); ++stage) {
+      all[stage].add(other.all[stage]);
+      measured[stage].add(other.measured[stage]);
+    }
+  }
+};
+
 std::size_t index(FitStage stage) { return static_cast<std::size_t>(stage); }
 
 void require_finite(const View& view, const Image& prediction) {
@@ -23,16 +33,25 @@ void require_finite(const View& view, const Image& prediction) {
   }
 }
 
-SumsByStage compare_view(const Model& model, const ViewRenderer& renderer, const View& view) {
+std::vector<std::uint8_t> measured_pixels(std::vector<std::uint8_t> counted, const Image& samples) {
+  for (std::size_t pixel = 0; pixel < counted.size(); ++pixel) counted[pixel] = counted[pixel] != 0 && samples.data[pixel] > 0.0f;
+  return counted;
+}
+
+Comparison compare_view(const Model& model, const ViewRenderer& renderer, const View& view) {
   const RadianceImage photograph = read_photograph(view, model.channels);
-  SumsByStage sums;
-  std::vector<std::uint8_t> counted;
+  Comparison sums;
+  std::vector<std::uint8_t> counted, measured;
   for (const FitStage stage : kFitStages) {
     if (!holds_stage(model, stage)) continue;
     const RenderedView rendered = predicted_view(renderer, view, stage);
     require_finite(view, rendered.radiance);
-    if (counted.empty()) counted = object_pixels(photograph, rendered.hit);
-    sums[index(stage)].add(rendered.radiance, photograph.radiance, counted);
+    if (counted.empty()) {
+      counted = object_pixels(photograph, rendered.hit);
+      measured = measured_pixels(counted, renderer.render_aov(view, Aov::Samples));
+    }
+    sums.all[index(stage)].add(rendered.radiance, photograph.radiance, counted);
+    sums.measured[index(stage)].add(rendered.radiance, photograph.radiance, measured);
   }
   return sums;
 }
@@ -80,18 +99,20 @@ Evaluation evaluate_model(const Model& model, const CalibratedSession& session, 
   evaluation.provenance_json = model.provenance_json;
 
   const ViewRenderer renderer(model);
-  SumsByStage fit, heldout;
+  Comparison fit, heldout;
   progress.begin("compare with photographs", static_cast<std::int64_t>(session.views.size()), "views");
   for (const View& view : session.views) {
-    const SumsByStage sums = compare_view(model, renderer, view);
-    SumsByStage& pool = view.heldout ? heldout : fit;
-    for (std::size_t stage = 0; stage < sums.size(); ++stage) pool[stage].add(sums[stage]);
-    const ErrorSums& last = sums[index(evaluation.last_stage)];
+    const Comparison sums = compare_view(model, renderer, view);
+    (view.heldout ? heldout : fit).add(sums);
+    const ErrorSums& last = sums.all[index(evaluation.last_stage)];
     evaluation.views.push_back({view.name, view.heldout, last.values() / model.channels, last.error()});
     progress.update(static_cast<std::int64_t>(evaluation.views.size()));
   }
-  evaluation.fit = errors(model, fit);
-  evaluation.heldout = errors(model, heldout);
+  evaluation.fit = errors(model, fit.all);
+  evaluation.heldout = errors(model, heldout.all);
+  evaluation.heldout_measured = errors(model, heldout.measured);
+  const std::size_t last = index(evaluation.last_stage);
+  evaluation.heldout_measured_share = static_cast<double>(heldout.measured[last].values()) / static_cast<double>(heldout.all[last].values());
   return evaluation;
 }
 

@@ -2,7 +2,8 @@
 //
 // Object pixels: not saturated, not defective, and inside the session's mask; in a view without a mask, where the ray
 // through the pixel's centre meets the model's mesh. A masked pixel that the mesh misses counts, with a prediction of
-// 0. Measures and their pooling over views: processing/model/image_error.h.
+// 0. The measured surface alone: those of these pixels whose texel was fitted to samples of its own, not lent to by its
+// neighbours. Measures and their pooling over views: processing/model/image_error.h.
 #pragma once
 
 #include <array>
@@ -32,6 +33,8 @@ struct Evaluation {
   std::string session_key;
   bool same_session = false;  // whether the model was fitted to this session
   ErrorByStage fit, heldout;  // pooled; the errors are NaN if no view is of that kind
+  ErrorByStage heldout_measured;   // of the held-out views the measured surface alone
+  double heldout_measured_share = 0;  // of their object pixels that show it; NaN without any
   std::vector<ViewEvaluation> views;
   std::string provenance_json;  // the model's: what the fit itself found on its samples
 };

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "processing/evaluation/evaluate_model.h"
+#include "processing/evaluation/stage_caution.h"
 
 namespace lumitexel {
 namespace {
@@ -29,6 +30,14 @@ Json to_json(const ErrorByStage& errors) {
   return stages;
 }
 
+Json to_json(const std::vector<StageCaution>& cautions) {
+  Json list = Json::array();
+  for (const StageCaution& caution : cautions) {
+    list.push_back({{"measure", caution.measure}, {"last", caution.last}, {"before", caution.before}, {"better_stage", to_string(caution.better)}});
+  }
+  return list;
+}
+
 Json sample_rms(const Json& provenance) {
   const Json given = provenance.value("rms", Json::object());
   Json rms = Json::object();
@@ -52,6 +61,9 @@ std::string evaluation_json(const Evaluation& evaluation) {
                          {"fit", to_json(evaluation.fit[last].value_or(ImageError{}))},
                          {"heldout", to_json(evaluation.heldout[last].value_or(ImageError{}))},
                          {"heldout_by_stage", to_json(evaluation.heldout)},
+                         {"heldout_measured_by_stage", to_json(evaluation.heldout_measured)},
+                         {"heldout_measured_share", finite_or_null(evaluation.heldout_measured_share)},
+                         {"heldout_better_before_last_stage", to_json(stage_cautions(evaluation))},
                          {"fit_by_stage", to_json(evaluation.fit)},
                          {"views", views},
                          {"rms_by_channel", provenance.value("rms_by_channel", Json())},

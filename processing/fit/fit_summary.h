@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "processing/fit/fit_options.h"
@@ -13,6 +14,12 @@
 #include "processing/surface/lumitexel.h"
 
 namespace lumitexel {
+
+// What left-out samples said of alternatives while materials were fitted once.
+struct FitChoices {
+  std::string fit;  // "on the mesh's normals", the first; "on fitted normals", "without light between surfaces", "round 2", ...
+  std::vector<Choice> choices;
+};
 
 // Light between the object's surfaces.
 struct IndirectSummary {
@@ -36,8 +43,9 @@ struct FitSummary {
   ErrorSource errors = ErrorSource::Given;  // whose error models the materials have, never Auto
   BrdfFamily family = BrdfFamily::Lafortune;     // of the materials' lobes
   LobeShapes lobe_shapes = LobeShapes::Shared;   // never Auto
-  std::vector<Choice> choices;                   // what left-out samples said of alternatives: when each was asked last
+  std::vector<FitChoices> choices;               // of each fit, in their order
   std::vector<std::size_t> texels_by_material, texels_before_normals;  // the second only where normals were fitted
+  std::vector<std::size_t> lobes_by_material;    // that its samples asked for
   std::vector<PriorChoice> prior;    // per material, of the last stage
   std::vector<std::size_t> bases_by_material;  // how many BRDFs its texels mix
   StageError single, cluster, projection;

@@ -25,15 +25,20 @@ json stages_json(const std::vector<StageCost>& stages) {
 
 json finite_or_null(double value) { return std::isfinite(value) ? json(value) : json(); }
 
-json choices_json(const std::vector<Choice>& choices) {
+json choice_json(const std::string& fit, const Choice& choice) {
+  return {{"fit", fit},
+          {"of", choice.of},
+          {"candidate", choice.candidate},
+          {"over", choice.before},
+          {"gain", finite_or_null(choice.gain.share)},
+          {"gain_sigma", finite_or_null(choice.gain.sigma)},
+          {"taken", choice.taken}};
+}
+
+json choices_json(const std::vector<FitChoices>& fits) {
   json list = json::array();
-  for (const Choice& choice : choices) {
-    list.push_back({{"of", choice.of},
-                    {"candidate", choice.candidate},
-                    {"over", choice.before},
-                    {"gain", finite_or_null(choice.gain.share)},
-                    {"gain_sigma", finite_or_null(choice.gain.sigma)},
-                    {"taken", choice.taken}});
+  for (const FitChoices& fit : fits) {
+    for (const Choice& choice : fit.choices) list.push_back(choice_json(fit.fit, choice));
   }
   return list;
 }
@@ -135,6 +140,7 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
   object["errors"] = paper ? json(nullptr) : json(to_string(summary.errors));  // the paper's method has its own, eq. 6
   object["family"] = to_string(summary.family);
   object["choices"] = choices_json(summary.choices);
+  object["lobes_by_material"] = summary.lobes_by_material;
   object["bases_by_material"] = summary.bases_by_material;
   object["lobe_shapes"] = to_string(summary.lobe_shapes);
   object["materials"] = summary.texels_by_material.size();

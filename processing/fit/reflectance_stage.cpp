@@ -33,19 +33,20 @@ ClusterOptions cluster_options(const FitOptions& options, const ErrorModel& erro
 
 Clustering learn_materials(const Observations& observations, const FitOptions& options, const ErrorModel& error,
                            const MaterialsBefore& before, Progress& progress) {
-  const int wanted = options.materials > 0 ? options.materials : kMostMaterials;
-  progress.begin("materials", wanted, "materials");
   const auto selection = select_lumitexels(observations, options.learning_lumitexels, options.draw);
   if (selection.empty()) {
     throw Error("fit: no surface point has " + std::to_string(kFewestSamples) +
                 " samples; more views or more light on the object are needed");
   }
-  const auto report = [&](int found) { progress.update(std::min(found, wanted)); };
+  const auto report = [&](int done) { progress.update(done); };
   if (options.method == FitMethod::Paper) {
+    progress.begin("materials", options.materials, "materials");
     const PaperOptions paper{options.materials, options.most_lobes, options.intensity_weight, options.final_lumitexels, options.draw};
     return paper_clustering(observations, selection, paper, report);
   }
-  return cluster_materials(observations, selection, cluster_options(options, error, before), report);
+  const ClusterOptions cluster = cluster_options(options, error, before);
+  progress.begin("materials", clustering_steps(cluster), "steps");
+  return cluster_materials(observations, selection, cluster, report);
 }
 
 std::vector<LumitexelList> members_of(const Clustering& clustering) {
@@ -84,7 +85,7 @@ std::vector<TexelWeights> project_all(const Observations& observations, const Cl
   progress.begin("texel weights", static_cast<std::int64_t>(model.materials.size()), "materials");
   for (std::size_t j = 0; j < members.size(); ++j) {
     const MaterialModel& material = clustering.materials[j].model;
-    summary.prior.push_back(choose_prior_and_bases(observations, members[j], material, options, shrinks, j, model.materials[j].basis, summary.choices));
+    summary.prior.push_back(choose_prior_and_bases(observations, members[j], material, options, shrinks, j, model.materials[j].basis, summary.choices.back().choices));
     summary.bases_by_material.push_back(model.materials[j].basis.size());
     const TexelPrior prior = summary.prior.back().prior;
     const TexelBasis basis(model.materials[j].basis, material.brdf, material.error, options.precision);
@@ -124,7 +125,7 @@ void move_bases(const Observations& observations, const Clustering& clustering, 
       const PriorChoice after = prior_for(observations, left_out, moved(learnt), material, options);
       const Gain gain = gain_of(after.by_texel, before.by_texel);
       better = worth_having(gain);
-      summary.choices.push_back({with_material("functions", j), "moved", "as found", gain, better});
+      summary.choices.back().choices.push_back({with_material("functions", j), "moved", "as found", gain, better});
     }
     if (better) basis = moved(members[j]);
     progress.update(static_cast<std::int64_t>(j + 1));
@@ -142,6 +143,12 @@ void set_materials(const Clustering& clustering, const Atlas& atlas, const Lumit
     model.materials.push_back({brdfs[j], {bases[j].begin(), end}, {}});
   }
   model.single = clustering.single.brdf;
+}
+
+// The first is on the mesh's normals; what another differs in, its pass says, as it is put behind a stage's name.
+std::string name_of_fit(const std::string& pass) {
+  const std::size_t start = pass.find_first_not_of(", ");
+  return start == std::string::npos ? "on the mesh's normals" : pass.substr(start);
 }
 
 }  // namespace
@@ -179,12 +186,14 @@ Reflectance fit_reflectance(const FitInputs& inputs, const MaterialsBefore& befo
   summary.prior.clear();
   summary.bases_by_material.clear();
   summary.texels_by_material.clear();
+  summary.lobes_by_material.clear();
   timer.begin("materials" + pass);
   result.clustering = learn_materials(observations, options, error, before, progress);
-  summary.choices = result.clustering.choices;
+  summary.choices.push_back({name_of_fit(pass), result.clustering.choices});
   summary.errors = result.clustering.errors;
   summary.family = result.clustering.fit.family;
   summary.lobe_shapes = result.clustering.fit.shared_shape ? LobeShapes::Shared : LobeShapes::Separate;
+  for (const FittedMaterial& material : result.clustering.materials) summary.lobes_by_material.push_back(material.model.brdf.lobes.size());
   const std::size_t most_bases = options.bases > 0 ? static_cast<std::size_t>(options.bases) : kMaxBasis;
   set_materials(result.clustering, atlas, lumitexels, observations, most_bases, model);
   timer.begin("projection" + pass);

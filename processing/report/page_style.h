@@ -14,6 +14,7 @@ h3 { font-size: 16px; margin: 24px 0 8px; font-weight: 650; }
 p { max-width: 76ch; margin: 0 0 14px; color: var(--quiet); }
 header p { font-size: 17px; }
 header p.finding { font-size: 19px; color: var(--ink); }
+header p.caution { color: var(--ink); border-left: 4px solid #c98500; padding-left: 12px; }
 .first { margin-top: 24px; }
 section { border-top: 1px solid var(--line); padding-top: 26px; margin-top: 36px; }
 .tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(138px, 1fr)); gap: 12px; margin-top: 22px; }

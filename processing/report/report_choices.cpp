@@ -12,7 +12,8 @@ using Json = nlohmann::json;
 std::string percent(double share) { return html::number(100.0 * share, 2) + " %"; }
 
 std::vector<std::string> choice_row(const Json& choice) {
-  return {choice.value("of", "?"),
+  return {choice.value("fit", ""),
+          choice.value("of", "?"),
           choice.value("over", "?"),
           choice.value("candidate", "?"),
           percent(number_or_nan(choice, "gain")),
@@ -37,7 +38,7 @@ std::string choice_section(const Json& provenance) {
   for (const Json& choice : choices) rows.push_back(choice_row(choice));
   const std::string normals = normals_sentence(provenance);
   if (rows.empty() && normals.empty()) return "";
-  const std::string table = rows.empty() ? "" : html::table({"choice", "from", "to", "gain", "one sigma", "outcome"}, rows);
+  const std::string table = rows.empty() ? "" : html::table({"fit", "choice", "from", "to", "gain", "one sigma", "outcome"}, rows);
   return html::section("What the samples decided",
                        "Where the fit could go more than one way, samples or photographs that were left out of it were predicted both ways. The gain is "
                        "by how much the second errs less, as a share of the first one's error. Other lobes, functions and materials are taken for half a percent "

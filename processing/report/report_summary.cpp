@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "processing/evaluation/stage_caution.h"
 #include "processing/report/html.h"
 #include "processing/report/measured_area.h"
 #include "processing/report/report_sections.h"
@@ -70,9 +71,10 @@ std::string prediction_text(const Json& prediction) {
   const auto number = [&](const char* key) { return percent(prediction.at(key)); };
   const auto count = prediction.at("photographs").get<std::int64_t>();
   const bool heldout = prediction.at("kept_out_of_the_fit").get<bool>();
-  const std::string photographs = count == 1 ? "One photograph" : std::to_string(count) + " photographs";
-  return (heldout ? photographs + " were kept out of the measurement as a test, and the model predicts them "
-                  : photographs + " were used and none was kept out as a test; the model repeats them ") +
+  const bool one = count == 1;
+  const std::string photographs = one ? "One photograph was" : std::to_string(count) + " photographs were", them = one ? "it " : "them ";
+  return (heldout ? photographs + " kept out of the measurement as a test, and the model predicts " + them
+                  : photographs + " used and none was kept out as a test; the model repeats " + them) +
          prediction.at("in_words").get<std::string>() + ": the difference is " + number("square_roots") + " of the picture as the eye weighs light and dark, and " +
          number("clipped") + " in plain light (highlights capped).";
 }
@@ -134,7 +136,10 @@ std::string headline(const ReportSubject& subject, const Json& summary) {
                      "</h1>\n<p>How the surface of this object reflects light, measured from photographs under a moving lamp. Each point "
                      "of the surface has a reflectance of its own as far as its photographs ask for one, so the object can be shown from any side under any light.</p>\n<p class=\"finding\">";
   if (summary.at("prediction").is_object()) text += html::escaped(prediction_text(summary.at("prediction"))) + " ";
-  return text + html::escaped(surface_text(summary)) + "</p>\n" + tiles(subject, summary) + "</header>\n";
+  text += html::escaped(surface_text(summary)) + "</p>\n";
+  const std::string caution = subject.evaluation != nullptr ? in_words(stage_cautions(*subject.evaluation)) : "";
+  if (!caution.empty()) text += "<p class=\"caution\">Caution: " + html::escaped(caution) + ".</p>\n";
+  return text + tiles(subject, summary) + "</header>\n";
 }
 
 std::string typical_comparison(const ReportSubject& subject, const ViewRenderer& renderer) {
@@ -142,10 +147,11 @@ std::string typical_comparison(const ReportSubject& subject, const ViewRenderer&
   if (!typical) return "";
   const View& view = subject.session->views[*typical];
   const ViewPictures pictures = make_view_pictures(renderer, view, subject.model.channels, subject.evaluation->last_stage, kPictureWidth_px);
+  const bool alone = prediction_json(*subject.evaluation).at("photographs") == 1;
   const std::string kind = view.heldout ? ", kept out of the fit. " : ", used in the fit. ";
   return "<div class=\"row first\">" +
          html::figure(html::picture(pictures.photograph, "photograph " + view.name),
-                      "Photograph " + view.name + kind + "Of its kind the one with the median error: neither the best nor the worst.") +
+                      "Photograph " + view.name + kind + (alone ? "" : "Of its kind the one with the median error: neither the best nor the worst.")) +
          html::figure(html::picture(pictures.rendering, "rendering of " + view.name),
                       "What the model says it should look like, at the same exposure: clipped relative error " +
                           html::number(subject.evaluation->views[*typical].error.clipped_rms) + ".") +

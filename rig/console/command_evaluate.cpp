@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "processing/evaluation/evaluate_model.h"
+#include "processing/evaluation/stage_caution.h"
 #include "rig/console/command.h"
 #include "rig/console/input_folder.h"
 
@@ -33,7 +34,19 @@ std::string stage_rows(const ErrorByStage& errors) {
     const auto& error = errors[static_cast<std::size_t>(stage)];
     if (error && std::isfinite(error->relative_rms)) text += row(to_string(stage), *error);
   }
-  return text.empty() ? "  (no such views)\n" : text;
+  return text.empty() ? "  none\n" : text;
+}
+
+// In the same photographs; the object's other pixels show texels without samples of their own, to which neighbours lend.
+std::string measured_rows(const Evaluation& evaluation) {
+  char title[60];
+  std::snprintf(title, sizeof title, "measured surface (%.1f %%)", 100.0 * evaluation.heldout_measured_share);
+  return heading(title) + stage_rows(evaluation.heldout_measured);
+}
+
+std::string caution_line(const Evaluation& evaluation) {
+  const std::string words = in_words(stage_cautions(evaluation));
+  return words.empty() ? "" : "caution: " + words + "\n";
 }
 
 std::string sample_rows(const nlohmann::json& rms) {
@@ -49,13 +62,14 @@ std::string sample_rows(const nlohmann::json& rms) {
 }
 
 std::string evaluation_text(const Evaluation& evaluation, const nlohmann::json& json) {
-  std::string text = heading("held-out photographs") + stage_rows(evaluation.heldout) +
-                     heading("photographs of the fit") + stage_rows(evaluation.fit);
+  std::string text = heading("held-out photographs") + stage_rows(evaluation.heldout);
+  if (std::isfinite(evaluation.heldout_measured_share)) text += measured_rows(evaluation);
+  text += heading("photographs of the fit") + stage_rows(evaluation.fit);
   text += heading(std::string("views at stage ") + to_string(evaluation.last_stage));
   for (const ViewEvaluation& view : evaluation.views) {
     text += row(view.image + (view.heldout ? " (held out)" : ""), view.error);
   }
-  return text + sample_rows(json.at("rms"));
+  return text + sample_rows(json.at("rms")) + caution_line(evaluation);
 }
 
 CommandResult evaluate_command(const EvaluateSettings& settings, CommandContext& context) {

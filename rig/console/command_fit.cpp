@@ -127,20 +127,22 @@ std::string rms_row(const std::string& title, const FitSummary& summary, bool wi
 std::string rms_table(const FitSummary& summary) {
   std::string text = line("%-32s %9s %9s %9s", "RMS of the samples, 1/sr", "1-RMS", "C-RMS", "P-RMS");
   if (summary.pfa) text += line(" %9s", "F-RMS");
-  if (summary.normal) text += line(" %9s", "N-RMS");
+  if (summary.normal) text += line(" %9s", "NF-RMS");
   text += "\n";
   text += rms_row("all", summary, true, [](const StageError& stage) { return stage.rms; });
   for (std::size_t c = 0; c < summary.single.by_channel.size(); ++c) {
     text += rms_row("channel " + std::to_string(c), summary, true, [c](const StageError& stage) { return stage.by_channel[c]; });
   }
+  if (summary.normal) text += "  materials of the fit on the mesh's normals\n";
   for (std::size_t j = 0; j < summary.single.by_material.size(); ++j) {
     const std::vector<std::size_t>& texels = summary.normal ? summary.texels_before_normals : summary.texels_by_material;
     text += rms_row(line("material %-2zu %10zu texels", j, texels[j]), summary, false,
                     [j](const StageError& stage) { return stage.by_material[j]; });
   }
+  if (summary.normal) text += "  materials of the last fit, on fitted normals\n";
   for (std::size_t j = 0; summary.normal && j < summary.normal->by_material.size(); ++j) {
-    const std::string title = line("on fitted normals: material %zu, %zu texels", j, summary.texels_by_material[j]);
-    text += line("  %-60s %9.5f\n", title.c_str(), summary.normal->by_material[j]);
+    const std::string title = line("material %-2zu %10zu texels", j, summary.texels_by_material[j]);
+    text += line("  %-*s %9.5f\n", summary.pfa ? 70 : 60, title.c_str(), summary.normal->by_material[j]);
   }
   return text;
 }
@@ -173,10 +175,12 @@ std::string error_line(const FitOptions& options, const FitSummary& summary) {
               options.errors == ErrorSource::Auto ? ", chosen by left-out samples" : ", as told");
 }
 
-// Only what was left to the samples.
+// Family and shapes only where they were left to the samples.
 std::string lobes_line(const FitOptions& options, const FitSummary& summary) {
-  std::string text;
   if (options.most_lobes == 0) return "";  // nothing was asked
+  std::string text = "lobes of each material:";
+  for (const std::size_t lobes : summary.lobes_by_material) text += line(" %zu", lobes);
+  text += options.method == FitMethod::Paper ? ", as told\n" : ", as its samples asked for\n";
   if (!options.family) text += line("lobes: %s, the family that predicted left-out samples best\n", to_string(summary.family));
   if (options.lobe_shapes == LobeShapes::Auto && summary.single.by_channel.size() > 1) {
     text += line("lobe shapes: %s: a shape for each colour channel %s left-out samples better\n", to_string(summary.lobe_shapes),
@@ -194,17 +198,29 @@ std::string bases_line(const FitSettings& settings, const FitSummary& summary) {
               summary.bases_by_material.size());
 }
 
+const char* outcome(const Choice& choice) {
+  if (choice.taken) return "taken";
+  return choice.gain.share == 0.0 && choice.gain.sigma == 0.0 ? "not taken: no difference" : "not taken";
+}
+
 // One a line: what the choice was, and how clear.
-std::string choices_table(const FitSummary& summary) {
-  if (summary.choices.empty()) return "";
-  std::string text = "What left-out samples said. Gain: how much of their error a candidate saves, +- standard error. Taken from 0.5 % and two standard errors on; a "
-                     "source of errors from two, estimated ones also if they lose next to nothing\n";
-  for (const Choice& choice : summary.choices) {
+std::string choices_of(const FitChoices& fit) {
+  if (fit.choices.empty()) return "";
+  std::string text = "  " + fit.fit + "\n";
+  for (const Choice& choice : fit.choices) {
     const std::string title = choice.of + ": " + choice.candidate + " over " + choice.before;
-    text += line("  %-50s %7.2f +- %.2f %%  %s\n", title.c_str(), 100.0 * choice.gain.share, 100.0 * choice.gain.sigma,
-                 choice.taken ? "taken" : "not taken");
+    text += line("    %-50s %7.2f +- %.2f %%  %s\n", title.c_str(), 100.0 * choice.gain.share, 100.0 * choice.gain.sigma,
+                 outcome(choice));
   }
   return text;
+}
+
+std::string choices_table(const FitSummary& summary) {
+  std::string rows;
+  for (const FitChoices& fit : summary.choices) rows += choices_of(fit);
+  if (rows.empty()) return "";
+  return "What left-out samples said. Gain: how much of their error a candidate saves, +- standard error. Taken from 0.5 % and two standard errors on; a "
+         "source of errors from two, estimated ones also if they lose next to nothing\n" + rows;
 }
 
 std::string normals_line(const FitSummary& summary) {
@@ -268,6 +284,9 @@ std::string fit_text(const FitSettings& settings, const FitOptions& options, con
                           settings.out.c_str(), summary.texels_by_material.size(), summary.lumitexels, summary.samples,
                           static_cast<double>(summary.samples) / static_cast<double>(summary.lumitexels), summary.starved);
   if (summary.unseen_triangles > 0) text += line("  %zu triangles are seen by no view\n", summary.unseen_triangles);
+  if (summary.texels_by_material.size() < static_cast<std::size_t>(std::max(options.materials, 0))) {
+    text += line("  fewer materials than the %d asked for: its samples do not tell more apart\n", options.materials);
+  }
   text += layout_text(summary.layout);
   text += error_line(options, summary);
   text += lobes_line(options, summary);

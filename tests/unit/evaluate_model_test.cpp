@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "processing/evaluation/predicted_view.h"
+#include "processing/evaluation/stage_caution.h"
 #include "processing/image/radiance_image.h"
 #include "processing/model/render_view.h"
 #include "tests/unit/bad_input_matcher.h"
@@ -98,6 +99,43 @@ TEST_F(EvaluateModel, AMaskedPixelThatTheMeshMissesCountsAsBlack) {
 TEST_F(EvaluateModel, APhotographOfAnotherSizeIsNamed) {
   session_.views[1].camera.width_px = kSize + 1;
   EXPECT_BAD_INPUT(evaluated(), "heldout.exr", "16x16", "17x16");
+}
+
+TEST_F(EvaluateModel, TheMeasuredSurfaceAloneIsJudgedBesideTheWhole) {
+  EXPECT_EQ(evaluated().heldout_measured_share, 1.0);
+  // Half of the texels borrow, and the photograph is right where the others are.
+  for (std::size_t texel : {0u, 2u}) model_.samples.data[texel] = 0.0f;
+  edit_photograph(1, [](RadianceImage& photograph) {
+    for (int y = 0; y < kSize; ++y) {
+      for (int x = kSize / 2; x < kSize; ++x) {
+        for (int c = 0; c < 3; ++c) photograph.radiance.at(x, y, c) = 0.5f;
+      }
+    }
+  });
+  const Evaluation evaluation = evaluated();
+  EXPECT_NEAR(evaluation.heldout_measured_share, 0.5, kRounding);
+  EXPECT_NEAR(evaluation.heldout_measured[2]->relative_rms, 0.0, kRounding);
+  EXPECT_GT(evaluation.heldout[2]->relative_rms, 0.3);
+}
+
+TEST_F(EvaluateModel, CautionsWhereKeptOutPhotographsWerePredictedBetterBefore) {
+  Evaluation evaluation = evaluated();
+  EXPECT_TRUE(stage_cautions(evaluation).empty());
+  EXPECT_EQ(in_words({}), "");
+  evaluation.heldout[0]->clipped_rms = 0.4;
+  evaluation.heldout[1]->clipped_rms = 0.3;
+  evaluation.heldout[2]->clipped_rms = 0.301;  // by chance
+  EXPECT_TRUE(stage_cautions(evaluation).empty());
+  evaluation.heldout[2]->clipped_rms = 0.5;
+  const auto cautions = stage_cautions(evaluation);
+  ASSERT_EQ(cautions.size(), 1u);
+  EXPECT_STREQ(cautions[0].measure, "clipped");
+  EXPECT_EQ(cautions[0].better, FitStage::Cluster);
+  EXPECT_NE(in_words(cautions).find("clipped 0.3 at stage cluster, 0.5 at the last"), std::string::npos) << in_words(cautions);
+  const Json json = Json::parse(evaluation_json(evaluation));
+  EXPECT_EQ(json.at("heldout_better_before_last_stage")[0].at("better_stage"), "cluster");
+  evaluation.heldout.fill(ImageError{NAN, NAN, NAN, NAN});  // nothing kept out
+  EXPECT_TRUE(stage_cautions(evaluation).empty());
 }
 
 TEST_F(EvaluateModel, TheJsonHasEveryKeyThatIsPromised) {
