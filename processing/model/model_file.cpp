@@ -10,6 +10,7 @@
 #include "processing/image/exr_file.h"
 #include "processing/model/atlas_maps.h"
 #include "processing/model/basis_file.h"
+#include "processing/model/model_hashes.h"
 #include "processing/surface/mesh_file.h"
 #include "rig/whole_file.h"
 
@@ -38,7 +39,7 @@ Json to_json(const LayerShape& shape, std::size_t materials) {
 
 bool looked_for_indirect(const Model& model) { return !model.indirect.data.empty(); }
 
-Json model_json(const Model& model) {
+Json model_json(const Model& model, const std::map<std::string, std::string>& hashes) {
   const Json provenance = Json::parse(model.provenance_json, nullptr, false);
   if (!provenance.is_object()) throw Error("model: its provenance is not a JSON object");
   Json maps = Json::object();
@@ -53,6 +54,7 @@ Json model_json(const Model& model) {
   if (before) document["before_normals"] = to_json(*before, model.before_normals->materials.size());
   if (looked_for_indirect(model)) document["indirect_bounces"] = model.indirect_bounces;
   document["maps"] = maps;
+  document["sha256"] = hashes;
   document["provenance"] = provenance;
   return document;
 }
@@ -96,7 +98,7 @@ void write_files(const fs::path& directory, const Model& model) {
   write_atlas_maps(directory, model);
   write_ply(directory / "mesh.ply", model.mesh);
   if (!model.outliers_csv.empty()) write_whole_file(directory / "outliers.csv", model.outliers_csv);
-  write_whole_file(directory / "model.json", model_json(model).dump(1) + "\n");
+  write_whole_file(directory / "model.json", model_json(model, file_hashes(directory)).dump(1) + "\n");
 }
 
 bool is_model(const fs::path& directory) {
@@ -238,6 +240,7 @@ fs::path without_trailing_slash(const fs::path& directory) {
 }
 
 void check_model_directory(const fs::path& directory) {
+  if (directory.empty()) throw BadInput("--out", "no name", "a new folder or a model to replace");
   const fs::path target = without_trailing_slash(directory);
   if (fs::exists(target) && !is_model(target) && !(fs::is_directory(target) && fs::is_empty(target))) {
     throw BadInput(directory.string(), "exists and is not a model", "a new folder or a model to replace");

@@ -21,7 +21,7 @@ std::array<float, 3> material_colour(int material) {
                                                            {1.00f, 0.62f, 0.65f},
                                                            {0.16f, 0.29f, 0.42f},
                                                            {0.62f, 0.78f, 0.44f},
-                                                           {0.52f, 0.52f, 0.52f}}};
+                                                           {0.47f, 0.47f, 0.08f}}};
   constexpr float kRepeatDarkening = 0.7f;
   std::array<float, 3> colour = kPalette[static_cast<std::size_t>(material) % kPalette.size()];
   const auto repeats = static_cast<float>(static_cast<std::size_t>(material) / kPalette.size());
@@ -30,9 +30,9 @@ std::array<float, 3> material_colour(int material) {
 }
 
 Image material_map(const ViewRenderer& renderer, const View& view) {
-  constexpr float kNoMaterial = 65535.0f, kNoMaterialGray = 0.8f;
+  constexpr float kUnmeasuredGray = 0.8f;
   const Image material = renderer.render_aov(view, Aov::Cluster);
-  const Image normal = renderer.render_aov(view, Aov::Normal);
+  const Image normal = renderer.render_aov(view, Aov::Normal), samples = renderer.render_aov(view, Aov::Samples);
   const Eigen::Vector3d towards_camera = view.camera_from_world.inverse().linear().col(2) * -1.0;
   Image shown(material.width, material.height, 3, 1.0f);
   for (int y = 0; y < shown.height; ++y) {
@@ -40,9 +40,8 @@ Image material_map(const ViewRenderer& renderer, const View& view) {
       const Eigen::Vector3d n(normal.at(x, y, 0), normal.at(x, y, 1), normal.at(x, y, 2));
       if (n.isZero()) continue;
       const auto shade = static_cast<float>(0.45 + 0.55 * std::max(0.0, n.dot(towards_camera)));
-      const float index = material.at(x, y);
-      const auto colour = index == kNoMaterial ? std::array{kNoMaterialGray, kNoMaterialGray, kNoMaterialGray}
-                                               : material_colour(static_cast<int>(index));
+      const bool measured = samples.at(x, y) > 0.0f;  // what borrows its material from beside it has none
+      const auto colour = measured ? material_colour(static_cast<int>(material.at(x, y))) : std::array{kUnmeasuredGray, kUnmeasuredGray, kUnmeasuredGray};
       for (int c = 0; c < 3; ++c) shown.at(x, y, c) = shade * colour[static_cast<std::size_t>(c)];
     }
   }

@@ -12,7 +12,7 @@ namespace lumitexel {
 std::array<float, 3> material_colour(int material);
 
 // The object with every material in its colour, shaded lightly so that its form can be seen. White beside the object,
-// gray where the atlas has no material.
+// gray where nothing was measured.
 Image material_map(const ViewRenderer& renderer, const View& view);
 
 // A sphere of one material (its cluster's BRDF), seen from the front, lit by a directional light from above left that

@@ -77,12 +77,13 @@ std::string normals_section(const ReportSubject& subject, const Json& data, cons
   const Model form = carrying(subject.model, subject.model.normal_sigma);
   const ViewRenderer form_renderer(form);
   const Image before = form_renderer.render_aov(view, Aov::Normal), after = renderer.render_aov(view, Aov::Normal);
-  const Image sigma = form_renderer.render_aov(view, Aov::Sigma);
+  const Image sigma = form_renderer.render_aov(view, Aov::Sigma), samples = form_renderer.render_aov(view, Aov::Samples);
+  const auto where_measured = [&](int x, int y, double value) { return samples.at(x, y) > 0.0f ? value : NAN; };
   const Image tilt_picture = drawn(after, [&](int x, int y) {
     const Eigen::Vector3d a = vector_at(before, x, y), b = vector_at(after, x, y);
-    return std::atan2(a.cross(b).norm(), a.dot(b)) / kDegree / kFullTilt_deg;
+    return where_measured(x, y, std::atan2(a.cross(b).norm(), a.dot(b)) / kDegree / kFullTilt_deg);
   });
-  const Image sigma_picture = drawn(after, [&](int x, int y) { return sigma.at(x, y) / kDegree / kFullSigma_deg; });
+  const Image sigma_picture = drawn(after, [&](int x, int y) { return where_measured(x, y, sigma.at(x, y) / kDegree / kFullSigma_deg); });
   const Json &tilt = data.at("tilt_against_mesh_deg"), &sigmas = data.at("sigma_deg");
   return html::section(
       "Fine relief: the normals", text_of(data),
@@ -94,14 +95,14 @@ std::string normals_section(const ReportSubject& subject, const Json& data, cons
           "</div><div class=\"row two\">" +
           figure_with_scale(tilt_picture, "tilt against the mesh",
                             "How far each normal was turned away from the mesh's: half of the measured texels by at most " +
-                                degrees(tilt.at("median")) + ", nine tenths by at most " + degrees(tilt.at("nine_tenths")) + ".",
+                                degrees(tilt.at("median")) + ", nine tenths by at most " + degrees(tilt.at("nine_tenths")) + ". Gray: not measured.",
                             "0°", full_angle(kFullTilt_deg)) +
           figure_with_scale(sigma_picture, "sigma of the normals",
                             "How uncertain the fitted normal is, one sigma per axis: half of the measured texels at most " +
                                 degrees(sigmas.at("median")) + ", nine tenths at most " + degrees(sigmas.at("nine_tenths")) +
                                 ". It follows from the scatter of the samples, widened by how far two halves of the photographs disagree, and from what the mesh and the "
                                 "neighbours leave open. What all photographs share, such as a wrong pose or material, comes on top: on a test "
-                                "object of known form errors were about twice as large.",
+                                "object of known form errors were about twice as large. Gray: not measured.",
                             "0°", full_angle(kFullSigma_deg)) +
           "</div>\n");
 }

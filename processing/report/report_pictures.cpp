@@ -37,7 +37,7 @@ std::string comparison(const View& view, const ViewPictures& pictures, const Vie
   return "<h3>" + html::escaped(view.name) + (view.heldout ? " (held out)" : " (used in the fit)") +
          "</h3><div class=\"row\">" +
          html::figure(html::picture(pictures.photograph, "photograph " + view.name),
-                      "Photograph; white is radiance " + html::number(pictures.white)) +
+                      "Photograph; white is a radiance of " + html::number(pictures.white) + " in the photographs' own unit") +
          html::figure(html::picture(pictures.rendering, "rendering of " + view.name),
                       "Rendering, same exposure; " + figures) +
          html::figure(html::picture(pictures.difference, "difference in " + view.name), "Rendering minus photograph") +

@@ -30,6 +30,10 @@ StageName name_of(FitStage stage) {
 
 std::string stage_title(FitStage stage) { return std::string(name_of(stage).title) + " (" + name_of(stage).papers + ")"; }
 
+std::string figure_at(const Json& list, std::size_t index) {
+  return index < list.size() && list.at(index).is_number() ? html::number(list.at(index).get<double>()) : "–";
+}
+
 // Rows: one a stage. Columns: the entries of the stage's list.
 std::string table_by_stage(const Json& lists, const std::vector<std::string>& names) {
   std::vector<std::string> header{"stage"};
@@ -39,11 +43,25 @@ std::string table_by_stage(const Json& lists, const std::vector<std::string>& na
     const std::string key = to_string(stage);
     if (!lists.is_object() || !lists.contains(key) || !lists.at(key).is_array()) continue;
     std::vector<std::string> row{stage_title(stage)};
-    for (const Json& value : lists.at(key)) row.push_back(value.is_number() ? html::number(value.get<double>()) : "–");
+    for (std::size_t i = 0; i < lists.at(key).size(); ++i) row.push_back(figure_at(lists.at(key), i));
     row.resize(header.size(), "–");
     rows.push_back(row);
   }
   return rows.empty() ? "" : html::table(header, rows);
+}
+
+// Rows: one a material, of which there may be many. Columns: the stages that have a list.
+std::string table_by_material(const Json& lists, std::size_t materials) {
+  std::vector<std::string> header{"material"};
+  std::vector<std::vector<std::string>> rows(materials);
+  for (std::size_t m = 0; m < materials; ++m) rows[m].push_back(std::to_string(m));
+  for (const FitStage stage : kFitStages) {
+    const std::string key = to_string(stage);
+    if (!lists.is_object() || !lists.contains(key) || !lists.at(key).is_array()) continue;
+    header.push_back(name_of(stage).papers);
+    for (std::size_t m = 0; m < materials; ++m) rows[m].push_back(figure_at(lists.at(key), m));
+  }
+  return rows.empty() || header.size() == 1 ? "" : html::table(header, rows);
 }
 
 std::size_t longest_list(const Json& lists) {
@@ -86,12 +104,6 @@ std::string bars(const Json& stages, const std::string& key, double unit, const 
   return text + "</div>\n";
 }
 
-std::vector<std::string> material_names(std::size_t count) {
-  std::vector<std::string> names;
-  for (std::size_t m = 0; m < count; ++m) names.push_back("material " + std::to_string(m));
-  return names;
-}
-
 // The RMS of r again, of each channel and of each material.
 std::string breakdown_tables(const Json& provenance) {
   std::string body;
@@ -109,8 +121,8 @@ std::string breakdown_tables(const Json& provenance) {
   const Json anew = {{"normal", provenance.value("rms_by_material_on_fitted_normals", Json())}};
   const bool sorted_anew = longest_list(anew) > 0;
   add(sorted_anew ? "RMS of r by material, as sorted on the mesh's normals" : "RMS of r by material",
-      table_by_stage(materials, material_names(longest_list(materials))));
-  add("RMS of r by material, as sorted anew on fitted normals", table_by_stage(anew, material_names(longest_list(anew))));
+      table_by_material(materials, longest_list(materials)));
+  add("RMS of r by material, as sorted anew on fitted normals", table_by_material(anew, longest_list(anew)));
   return body;
 }
 

@@ -1,12 +1,19 @@
 #include "processing/report/texel_maps.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "processing/report/html.h"
 #include "processing/report/view_pictures.h"
 
 namespace lumitexel {
+namespace {
+
+constexpr std::array kUnknownGray{0.6f, 0.6f, 0.6f};  // darker than the middle of the scale
+
+}  // namespace
 
 bool is_measured(const Model& model, std::size_t texel) {
   return model.material[texel] != Model::kNoMaterial && model.samples.data[texel] > 0.0f;
@@ -55,7 +62,8 @@ Image drawn(const Image& normal, const std::function<double(int x, int y)>& posi
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
       if (normal.at(x, y, 0) == 0.0f && normal.at(x, y, 1) == 0.0f && normal.at(x, y, 2) == 0.0f) continue;
-      const auto colour = false_colour(std::clamp(position(x, y), -1.0, 1.0));
+      const double at = position(x, y);
+      const auto colour = std::isnan(at) ? kUnknownGray : false_colour(std::clamp(at, -1.0, 1.0));
       std::copy(colour.begin(), colour.end(), &picture.at(x, y));
     }
   }

@@ -28,7 +28,8 @@ std::string percent(const nlohmann::json& share);
 // reflectance's sigma (Aov::Sigma).
 Model carrying(const Model& model, const Image& map, int channel = 0);
 
-// As the page shows values along the rays of a view: position(x, y) goes to false_colour; white where `normal`, the view's Aov::Normal, has no object.
+// As the page shows values along the rays of a view: position(x, y) goes to false_colour; white where `normal`, the view's Aov::Normal, has no object;
+// gray where the position is not a number.
 Image drawn(const Image& normal, const std::function<double(int x, int y)>& position);
 
 // A picture over what it shows, and the scale of its colours from near-white to full red.

@@ -13,6 +13,7 @@
 #include "processing/surface/mesh_file.h"
 #include "rig/console/command.h"
 #include "rig/console/input_folder.h"
+#include "rig/console/output_file.h"
 #include "rig/console/named_value.h"
 #include "rig/console/render_settings.h"
 #include "rig/view_selection.h"
@@ -98,6 +99,9 @@ void add_outcome(const SplatView& points, CommandResult& result) {
 CommandResult render_command(const RenderSettings& settings, CommandContext& context) {
   const Aov aov = named_value("--aov", settings.aov, aov_words());
   check_render_settings(settings, aov);
+  if (settings.out.empty()) throw BadInput("--out", "no name", "an EXR file to write");
+  require_writable_folder("--out", settings.out);
+  require_writable_folder("--png", settings.png);
   const std::filesystem::path folder = settings.level > 0 ? level_directory(settings.model, settings.level) : std::filesystem::path(settings.model);
   if (settings.level > 0 && !std::filesystem::exists(folder)) {
     throw BadInput("--level", std::to_string(settings.level) + ", which is not in " + settings.model, "one that `lumitexel mip " + settings.model + " --levels " + std::to_string(settings.level) + "` makes");

@@ -6,6 +6,7 @@
 #include "processing/report/viewer/viewer_section.h"
 #include "rig/console/command.h"
 #include "rig/console/input_folder.h"
+#include "rig/console/output_file.h"
 #include "rig/whole_file.h"
 #include "sim/sgd_brdf.h"
 
@@ -37,6 +38,7 @@ std::vector<KnownMaterial> measured_materials() {
 }
 
 CommandResult report_command(const ReportSettings& settings, CommandContext& context) {
+  require_writable_folder("--page", settings.out);
   const Model model = model_given("MODEL", settings.model);
   std::optional<CalibratedSession> session;
   std::optional<Evaluation> evaluation;

@@ -7,6 +7,7 @@
 #include "processing/report/viewer/viewer_sky.h"
 #include "rig/console/command.h"
 #include "rig/console/input_folder.h"
+#include "rig/console/output_file.h"
 #include "rig/whole_file.h"
 
 namespace lumitexel {
@@ -35,6 +36,7 @@ std::string samples_text(std::size_t every) {
 }
 
 CommandResult view_command(const ViewSettings& settings, CommandContext& context) {
+  require_writable_folder("--out", settings.out);
   const Model model = model_given("MODEL", settings.model);
   const fs::path folder = without_trailing_slash(settings.model);
   const fs::path out = settings.out.empty() ? fs::path(folder.string() + ".html") : fs::path(settings.out);

@@ -1,10 +1,12 @@
 #include "rig/console/input_folder.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <vector>
 
 #include "drivers/error.h"
 #include "processing/model/model_file.h"
+#include "processing/model/model_hashes.h"
 
 namespace lumitexel {
 namespace {
@@ -51,6 +53,9 @@ std::string what_folder_is(const fs::path& path) {
 
 Model model_given(const std::string& where, const fs::path& folder) {
   require(where, folder, kModelFile, "the folder of a model, as `lumitexel fit` writes it, with a model.json");
+  for (const std::string& file : changed_files(folder)) {
+    std::fprintf(stderr, "note: %s is not as the fit wrote it: its SHA-256 is not the one in model.json; going on with it as it is\n", (folder / file).c_str());
+  }
   return read_model(folder);
 }
 

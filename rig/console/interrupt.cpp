@@ -1,5 +1,7 @@
 #include "rig/console/interrupt.h"
 
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdlib>
 #include <thread>
@@ -11,6 +13,14 @@ namespace lumitexel {
 namespace {
 
 constexpr double kLampsOff_s = 1.5;
+
+// Only what a signal handler may do.
+void end_with_a_word(int number) {
+  constexpr char kWord[] = "\nlumitexel: stopped; its results were not written, or not all of them\n";
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, kWord, sizeof kWord - 1);
+  std::signal(number, SIG_DFL);
+  std::raise(number);
+}
 
 }  // namespace
 
@@ -36,6 +46,11 @@ std::stop_token stop_on_interrupt() {
     std::_Exit(128 + number);
   }).detach();
   return source.get_token();
+}
+
+void end_on_interrupt() {
+  std::signal(SIGINT, end_with_a_word);
+  std::signal(SIGTERM, end_with_a_word);
 }
 
 }  // namespace lumitexel

@@ -37,12 +37,18 @@ const std::vector<void (*)(CLI::App&, CommandAction&)> kCommands = {
     add_selftest_command,
 };
 
-// Those that end cleanly on Ctrl-C; the others may be killed at any time and are.
+// Those that end cleanly on Ctrl-C; the others may be killed at any time and are, with a word.
 bool watches_for_stop(const CLI::App& app) {
   for (const char* name : {"commission", "simulate", "capture", "resume", "replay", "import"}) {
     if (app.got_subcommand(name)) return true;
   }
   return false;
+}
+
+std::stop_token stop_token_for(const CLI::App& app) {
+  if (watches_for_stop(app)) return stop_on_interrupt();
+  end_on_interrupt();
+  return {};
 }
 
 int run(const CommandAction& action, bool json, std::stop_token stop) {
@@ -58,6 +64,10 @@ int run(const CommandAction& action, bool json, std::stop_token stop) {
     }
     return result.exit_code;
   } catch (const BadInput& error) {
+    progress.finish();
+    std::cerr << "lumitexel: " << error.what() << '\n';
+    return kBadInput;
+  } catch (const Corrupt& error) {  // what was given is damaged
     progress.finish();
     std::cerr << "lumitexel: " << error.what() << '\n';
     return kBadInput;
@@ -113,7 +123,7 @@ int main_function(int argc, char** argv) {
     }
     return app.exit(error) == 0 ? 0 : kBadInput;
   }
-  return run(action, json, watches_for_stop(app) ? stop_on_interrupt() : std::stop_token{});
+  return run(action, json, stop_token_for(app));
 }
 
 }  // namespace

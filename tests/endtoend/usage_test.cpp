@@ -60,6 +60,28 @@ TEST(Usage, AFolderOfTheWrongKindIsCalledWhatItIs) {
   expect_refused("render " + at("other") + " --out x.exr --camera '0,0,1;0,0,0;0,1,0;30;4x4' --light 0,0,1", {"MODEL", "notes.txt"});
 }
 
+// Damaged input is bad input, whichever command meets it.
+TEST(Usage, ADamagedJournalIsNamed) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "session");
+  std::ofstream(folder / "session" / "session.db") << std::string(5000, 'x');
+  const std::string session = (folder / "session").string(), out = (folder / "out").string();
+  for (const std::string& command : {"verify " + session, "fit " + session + " --out " + out, "calibrate " + session, "replay " + session + " --out " + out}) {
+    expect_refused(command, {"session.db"});
+  }
+}
+
+TEST(Usage, WhereNothingCanBeWrittenIsSaidBeforeTheWork) {
+  const TemporaryFolder folder;
+  const std::string here = folder.path().string(), nowhere = (folder / "missing" / "x").string();
+  for (const std::string& out : {here, nowhere}) {
+    expect_refused("view M --out " + out, {"--out", "expected a file"});
+    expect_refused("report M --page " + out, {"--page", "expected a file"});
+    expect_refused("render M --camera '0,0,1;0,0,0;0,1,0;30;4x4' --light 0,0,1 --out " + out, {"--out", "expected a file"});
+  }
+  expect_refused("fit S --out ''", {"--out", "no name"});
+}
+
 TEST(Usage, AWrongValueIsAnsweredWithItsOptionAndTheRightOnes) {
   expect_refused("fit S --out M --family blinn", {"--family: 'blinn'", "lafortune, ggx, ward or auto"});
   expect_refused("fit S --out M --quality fine", {"--quality: 'fine'", "draft, standard or reference"});

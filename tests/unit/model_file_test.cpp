@@ -7,6 +7,7 @@
 #include <random>
 
 #include "processing/image/exr_file.h"
+#include "processing/model/model_hashes.h"
 #include "processing/surface/mesh_file.h"
 #include "rig/whole_file.h"
 #include "tests/unit/bad_input_matcher.h"
@@ -159,6 +160,30 @@ TEST(ModelFile, AModelIsReplacedAsAWholeAndNothingElseIs) {
   write_whole_file(folder / "letters" / "love.txt", "dear");
   EXPECT_BAD_INPUT(write_model(folder / "letters", second), "letters", "not a model");
   EXPECT_TRUE(fs::exists(folder / "letters" / "love.txt"));
+}
+
+TEST(ModelFile, AFileChangedSinceIsNamed) {
+  const TemporaryFolder folder;
+  write_model(folder / "model", odd_model());
+  write_whole_file(folder / "model" / "report.html", "beside it");
+  EXPECT_TRUE(changed_files(folder / "model").empty());
+  const fs::path weights = folder / "model" / "weights_0.exr", other = folder / "model" / "weights_1.exr";
+  const std::string bytes = read_whole_file(weights);
+  fs::rename(other, weights);  // another whole map in its place
+  write_whole_file(other, bytes);
+  EXPECT_EQ(changed_files(folder / "model"), (std::vector<std::string>{"weights_0.exr", "weights_1.exr"}));
+}
+
+// Models of before there were hashes are read as ever.
+TEST(ModelFile, WithoutHashesNothingIsCalledChanged) {
+  const TemporaryFolder folder;
+  write_model(folder / "model", odd_model());
+  Json description = Json::parse(read_whole_file(folder / "model" / "model.json"));
+  EXPECT_EQ(description.at("sha256").size(), 1u + description.at("maps").size() + 2u) << "basis, maps, mesh and outliers";
+  description.erase("sha256");
+  write_whole_file(folder / "model" / "model.json", description.dump());
+  write_whole_file(folder / "model" / "mesh.ply", "other");
+  EXPECT_TRUE(changed_files(folder / "model").empty());
 }
 
 TEST(ModelFile, AModelWhoseMapsDoNotFitIsNotWritten) {

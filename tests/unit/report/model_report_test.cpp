@@ -82,6 +82,20 @@ TEST_F(ModelReport, SaysTheNumbersOfTheFitAndOfTheComparison) {
   EXPECT_THAT(html, HasSubstr(html::number(evaluation_.heldout[0]->psnr_db)));
 }
 
+TEST_F(ModelReport, CautionsWhereAnEarlierStagePredictsBetter) {
+  EXPECT_THAT(page(true), Not(HasSubstr("Caution")));
+  model_.single = diffuse_brdf(0.1, 0.1, 0.1);  // as the photograph is, which was kept out
+  const std::string html = page(true);
+  EXPECT_THAT(html, HasSubstr("Caution: photographs kept out of the fit were predicted better before its last stage"));
+  EXPECT_THAT(html, HasSubstr("at stage single"));
+}
+
+TEST_F(ModelReport, OnePhotographIsSpokenOfAsOne) {
+  const std::string html = page(true);
+  EXPECT_THAT(html, HasSubstr("One photograph was kept out of the measurement as a test, and the model predicts it"));
+  EXPECT_THAT(html, Not(HasSubstr("neither the best nor the worst")));
+}
+
 TEST_F(ModelReport, NamesFromFilesCannotBecomeMarkup) {
   const std::string html = page(true);
   EXPECT_THAT(html, HasSubstr("evening &amp; &lt;view&gt;"));
