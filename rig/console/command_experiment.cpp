@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 #include <numeric>
+#include <optional>
 
 #include "drivers/error.h"
 #include "processing/brdf/experiment/experiment_rows.h"
@@ -19,7 +20,8 @@ namespace {
 
 struct ExperimentSettings {
   int seeds = 20, first_seed = 1;
-  std::string method = "lumitexel", materials = "5";
+  std::optional<std::string> method, materials;
+  bool paper = false, automatic = false;  // short for --method paper, --materials auto
   std::vector<std::string> only;
   std::string page;
 };
@@ -47,12 +49,19 @@ std::vector<ExperimentRow> chosen_rows(const std::vector<std::string>& names) {
 struct Way {
   bool paper;
   int materials;
+  std::string in_words() const {
+    return std::string(paper ? "as the paper published it" : "by this program's own method") + ", " +
+           (materials == 0 ? "as many materials as the samples ask for" : std::to_string(materials) + (materials == 1 ? " material" : " materials") + " asked for");
+  }
 };
 
 // throws BadInput
 Way chosen_way(const ExperimentSettings& settings) {
-  const Way way{named_value<bool>("--method", settings.method, {{"lumitexel", false}, {"paper", true}}),
-                materials_wanted("--materials", settings.materials)};
+  if (settings.paper && settings.method) throw BadInput("--paper", "with --method", "one of both");
+  if (settings.automatic && settings.materials) throw BadInput("--auto", "with --materials", "one of both");
+  const std::string method = settings.paper ? "paper" : settings.method.value_or("lumitexel");
+  const std::string materials = settings.automatic ? "auto" : settings.materials.value_or("5");
+  const Way way{named_value<bool>("--method", method, {{"lumitexel", false}, {"paper", true}}), materials_wanted("--materials", materials)};
   if (way.paper && way.materials == 0) throw BadInput("--materials", "auto with --method paper", "a number: the paper does not choose it");
   return way;
 }
@@ -79,9 +88,10 @@ nlohmann::json score_json(int seed, const FiveMaterialsScore& s) {
           {"accuracy", s.accuracy}, {"bayes_accuracy", s.bayes_accuracy}, {"normal_noise_accuracy", s.normal_accuracy}};
 }
 
-nlohmann::json row_json(const ExperimentRow& row, int first_seed) {
+nlohmann::json row_json(const ExperimentRow& row, const Way& way, int first_seed) {
   const ExperimentTally t = tally(row);
-  nlohmann::json json = {{"setting", row.name}, {"seeds", t.seeds}, {"five_materials", t.five}, {"all_found", t.found},
+  nlohmann::json json = {{"setting", row.name}, {"method", way.paper ? "paper" : "lumitexel"},
+                         {"materials_asked", way.materials == 0 ? nlohmann::json("auto") : nlohmann::json(way.materials)}, {"seeds", t.seeds}, {"five_materials", t.five}, {"all_found", t.found},
                          {"all_within_0.2_percent", t.under_paper},
                          {"all_within_0.2_percent_at_bound", t.under_paper_at_bound},
                          {"worst_exponent_median", number(t.worst_exponent)}, {"worst_diffuse_median", number(t.worst_diffuse)},
@@ -129,7 +139,7 @@ CommandResult experiment_command(const ExperimentSettings& settings, CommandCont
   require_writable_folder("--page", settings.page);
   CommandResult result;
   result.json = nlohmann::json::array();
-  result.text = kTableHead;
+  result.text = "Clustered " + way.in_words() + "\n" + kTableHead;
   for (ExperimentRow& row : rows) {
     context.progress.begin(row.name, settings.seeds, "seeds");
     for (int seed = 0; seed < settings.seeds; ++seed) {
@@ -138,11 +148,11 @@ CommandResult experiment_command(const ExperimentSettings& settings, CommandCont
       context.progress.update(seed + 1);
     }
     result.text += row_text(row);
-    result.json.push_back(row_json(row, settings.first_seed));
+    result.json.push_back(row_json(row, way, settings.first_seed));
   }
   result.text += kTableFoot;
   if (!settings.page.empty()) {
-    write_whole_file(settings.page, experiment_page(rows, result.json.dump()));
+    write_whole_file(settings.page, experiment_page(rows, way.in_words(), result.json.dump()));
     result.text += settings.page + ": the same as a page with drawings\n";
   }
   return result;
@@ -157,11 +167,10 @@ void add_experiment_command(CLI::App& app, CommandAction& action) {
   command.add_option("--first-seed", settings->first_seed, "The first of them").capture_default_str();
   command.add_option("--only", settings->only, "These settings only: " + setting_names()).type_name("NAME");
   command.add_option("--page", settings->page, "HTML file to write, with drawings of lobes, errors and labels");
-  command.add_option("--method", settings->method, "lumitexel, or paper: clustering as published").capture_default_str();
-  command.add_option("--materials", settings->materials, "How many materials to look for, 1 to 64, or auto: as many as the samples ask for")
-      .capture_default_str();
-  command.add_flag_callback("--paper", [settings] { settings->method = "paper"; }, "The same as --method paper");
-  command.add_flag_callback("--auto", [settings] { settings->materials = "auto"; }, "The same as --materials auto");
+  command.add_option("--method", settings->method, "lumitexel, or paper: clustering as published (default: lumitexel)");
+  command.add_option("--materials", settings->materials, "How many materials to look for, 1 to 64, or auto: as many as the samples ask for (default: 5)");
+  command.add_flag("--paper", settings->paper, "The same as --method paper");
+  command.add_flag("--auto", settings->automatic, "The same as --materials auto");
   command.callback([settings, &action] {
     action = [settings](CommandContext& context) { return experiment_command(*settings, context); };
   });

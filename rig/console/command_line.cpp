@@ -101,6 +101,7 @@ template CommandOption Command::add_option(const std::string&, double&, const st
 template CommandOption Command::add_option(const std::string&, std::optional<int>&, const std::string&);
 template CommandOption Command::add_option(const std::string&, std::optional<std::size_t>&, const std::string&);
 template CommandOption Command::add_option(const std::string&, std::optional<double>&, const std::string&);
+template CommandOption Command::add_option(const std::string&, std::optional<std::string>&, const std::string&);
 template CommandOption Command::add_option(const std::string&, std::vector<std::string>&, const std::string&);
 
 void Command::add_flag(const std::string& names, bool& value, const std::string& description) { app_.add_flag(names, value, description); }

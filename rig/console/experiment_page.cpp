@@ -60,9 +60,9 @@ std::string row_section(const ExperimentRow& row) {
 
 }  // namespace
 
-std::string experiment_page(const std::vector<ExperimentRow>& rows, const std::string& json) {
+std::string experiment_page(const std::vector<ExperimentRow>& rows, const std::string& way, const std::string& json) {
   std::string body = "<header><h1>Five materials under noise</h1>\n<p>Section 11 of the paper: five materials of one diffuse colour that differ only in "
-                     "their exponents, some 46,000 samples with 5 % noise, clustered without being told which is which. " +
+                     "their exponents, some 46,000 samples with 5 % noise, clustered without being told which is which: " + html::escaped(way) + ". " +
                      seeds_text(rows.empty() ? 0 : rows[0].scores.size()) + " each.</p></header>\n";
   body += table_section(rows) + labels_section(rows);
   for (const ExperimentRow& row : rows) body += row_section(row);

@@ -8,8 +8,8 @@
 
 namespace lumitexel {
 
-// rows: with their scores. json: what the command states, carried in the page's data block.
-std::string experiment_page(const std::vector<ExperimentRow>& rows, const std::string& json);
+// rows: with their scores. way: how they were clustered, in words. json: what the command states, carried in the page's data block.
+std::string experiment_page(const std::vector<ExperimentRow>& rows, const std::string& way, const std::string& json);
 
 // Inline SVG drawings of one row; empty if no seed found all five.
 // The five lobes as they are, along the plane of incidence, and below by how much the recovered ones differ: the band that nine seeds of

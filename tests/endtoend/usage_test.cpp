@@ -99,6 +99,8 @@ TEST(Usage, AWrongValueIsAnsweredWithItsOptionAndTheRightOnes) {
   expect_refused("fit S --out M --interreflections x", {"--interreflections: 'x'", "auto, always or off"});
   expect_refused("tradeoff S --materials many", {"--materials: 'many'", "or auto"});
   expect_refused("tradeoff S --materials auto --only paper", {"--materials"});
+  expect_refused("experiment --auto --materials 4", {"--auto", "with --materials"});
+  expect_refused("experiment --paper --method paper", {"--paper", "with --method"});
   expect_refused("experiment --only x", {"--only: 'x'", "'even, Gaussian noise'"});
 }
 

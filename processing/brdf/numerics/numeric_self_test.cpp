@@ -36,6 +36,7 @@ NumericCases run_numeric_self_test(const NumericSelfTestOptions& options, const 
     const NumericCases part = parts[k]();
     cases.insert(cases.end(), part.begin(), part.end());
   }
+  report(static_cast<int>(parts.size()), static_cast<int>(parts.size()));
   return cases;
 }
 
@@ -48,7 +49,8 @@ std::string to_table(const NumericCases& cases) {
                   row.ok() ? "ok" : "FAILED");
     table += line;
   }
-  return table;
+  return table + "largest: the worst met, limit: the most that passes. Of values and slopes it is the error over max(f, peak / 1000), or over the slope\n"
+                 "itself where that is more; of all else what is asked, as a share of what is right or as a count.\n";
 }
 
 }  // namespace lumitexel

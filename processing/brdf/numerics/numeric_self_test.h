@@ -15,7 +15,7 @@ struct NumericSelfTestOptions {
 };
 inline constexpr NumericSelfTestOptions kFullNumericSelfTest{1'000'000, 10'000'000};
 
-// report(part, parts) is called as each part begins. Call before the process starts threads (trapped_run.h).
+// report(part, parts) is called as each part begins, and with (parts, parts) at the end. Call before the process starts threads (trapped_run.h).
 NumericCases run_numeric_self_test(const NumericSelfTestOptions& options, const std::function<void(int, int)>& report);
 std::string to_table(const NumericCases& cases);
 
