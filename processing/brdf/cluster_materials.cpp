@@ -117,7 +117,9 @@ Clustering cluster_materials(const Observations& observations, const LumitexelLi
   mean.estimate_error = false;
   const Brdf start = fit_material(samples_of(observations, selection), observations.channels, nullptr, mean).model.brdf;
   result.single = fit_material(samples_of(observations, thinned(all, options.final_lumitexels, options.draw)), observations.channels, &start, mean).model;
-  for (std::size_t k = 0; k < mixture.materials.size(); ++k) result.materials.push_back({mixture.materials[k], fits[k], 0});
+  for (std::size_t k = 0; k < mixture.materials.size(); ++k) {
+    result.materials.push_back({mixture.materials[k], fits[k], 0, sigma_of(mixture.materials[k], samples_of(observations, finalists, r, k), settled)});
+  }
   // The finalists were chosen alike from every material: how common each is, all lumitexels say.
   set_shares(responsibilities(mixture, observations, all), mixture);
   set_labels(most_probable(responsibilities(mixture, observations, all)), all, observations.lumitexels(), result);

@@ -46,6 +46,7 @@ struct FittedMaterial {
   MaterialModel model;
   BrdfFit fit;              // with the covariance
   std::size_t members = 0;  // lumitexels
+  BrdfSigma sigma{};        // of model.brdf, from its final samples
 };
 
 struct Clustering {

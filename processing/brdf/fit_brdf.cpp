@@ -128,4 +128,20 @@ BrdfFit fit_brdf(const Brdf& start, FitSamples samples, const BrdfFitOptions& op
   return fit;
 }
 
+Eigen::MatrixXd covariance_by_lumitexel(const Brdf& brdf, FitSamples samples, const BrdfFitOptions& options) {
+  const BrdfParameters layout = parameters_of(brdf, options);
+  std::size_t lumitexels = 0;
+  for (std::size_t s = 0; s < samples.size(); ++s) lumitexels += s == 0 || samples[s].lumitexel != samples[s - 1].lumitexel;
+  if (lumitexels < 2) return Eigen::MatrixXd::Zero(layout.size(), layout.size());
+  const Eigen::VectorXd values = layout.from(brdf);
+  BrdfProblem problem(samples, layout, options.error, options.robust);
+  problem.reweight(values);
+  const NormalEquations equations = problem.linearise(values);
+  bool ignored = false;
+  const Eigen::MatrixXd inverse = covariance_of(equations, layout.held(values, equations.gradient),
+                                                layout.unseen(equations.matrix.diagonal(), equations.cost), ignored);
+  const double few = static_cast<double>(lumitexels) / static_cast<double>(lumitexels - 1);
+  return few * inverse * problem.scatter_by_lumitexel(values) * inverse;
+}
+
 }  // namespace lumitexel

@@ -97,6 +97,11 @@ BrdfFitOptions refit_options(const MaterialModel& model, const MaterialFitOption
   return fit;
 }
 
+BrdfSigma sigma_of(const MaterialModel& model, FitSamples samples, const MaterialFitOptions& options) {
+  const BrdfFitOptions fit = refit_options(model, options);
+  return sigma_of(covariance_by_lumitexel(model.brdf, samples, fit), parameters_of(model.brdf, fit));
+}
+
 MaterialFit fit_material(FitSamples samples, int channels, const Brdf* start, const MaterialFitOptions& options) {
   MaterialFit best = matte(samples, channels, options);
   MaterialFit grown = best;

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "processing/brdf/brdf_sigma.h"
 #include "processing/brdf/fit_brdf.h"
 
 namespace lumitexel {
@@ -37,6 +38,9 @@ struct MaterialFit {
 // A lobe stays if it lowers the criterion: the Bayesian information criterion with the likelihood tempered by the error model's
 // `independence`, since samples of one lumitexel err together, and predicts photographs left out (left_out_photographs.h). With a `start`, as many lobes as it has begin where its own are.
 MaterialFit fit_material(FitSamples samples, int channels, const Brdf* start, const MaterialFitOptions& options);
+
+// Of the BRDF that these samples were fitted by.
+BrdfSigma sigma_of(const MaterialModel& model, FitSamples samples, const MaterialFitOptions& options);
 
 // The options of a fit that keeps the number and kind of lobes of `model`.
 BrdfFitOptions refit_options(const MaterialModel& model, const MaterialFitOptions& options);

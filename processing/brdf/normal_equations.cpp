@@ -111,6 +111,20 @@ NormalEquations BrdfProblem::linearise(const Eigen::VectorXd& at) const {
   return sums;
 }
 
+Eigen::MatrixXd BrdfProblem::scatter_by_lumitexel(const Eigen::VectorXd& at) const {
+  const int n = layout_.size();
+  const BrdfSlopes model(layout_, at);
+  NormalEquations own{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), 0.0};
+  Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(n, n);
+  for (std::size_t s = 0; s < samples_.size(); ++s) {
+    add(model, s, own);
+    if (s + 1 < samples_.size() && samples_[s + 1].lumitexel == samples_[s].lumitexel) continue;
+    scatter += own.gradient * own.gradient.transpose();
+    own.gradient.setZero();
+  }
+  return scatter;
+}
+
 Eigen::VectorXd damped_step(const NormalEquations& equations, const std::vector<bool>& held, double damping) {
   Eigen::MatrixXd matrix = equations.matrix;
   Eigen::VectorXd right = -equations.gradient;

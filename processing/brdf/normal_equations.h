@@ -30,6 +30,9 @@ class BrdfProblem {
   double cost(const Eigen::VectorXd& at) const;
   NormalEquations linearise(const Eigen::VectorXd& at) const;
   double total_weight() const;  // of the samples, as frozen
+  // Sum over lumitexels of g g^T, g the gradient J^T e of all of a lumitexel's samples together: how far the gradient strays by chance where
+  // lumitexels are independent of each other and their own samples are not.
+  Eigen::MatrixXd scatter_by_lumitexel(const Eigen::VectorXd& at) const;
 
  private:
   struct SampleWeight {

@@ -129,9 +129,11 @@ Clustering paper_clustering(const Observations& observations, const LumitexelLis
   result.single = {clusterer.fit(thinned(all, options.final_lumitexels, options.draw), nullptr).brdf, fit.error};
   for (std::size_t k = 0; k < materials.brdfs.size(); ++k) {
     const LumitexelList members = PaperClusterer::members_of(all, materials.label, k);
-    const BrdfFit final_fit = clusterer.fit(thinned(members, options.final_lumitexels, options.draw), &materials.brdfs[k]);
+    const LumitexelList finalists = thinned(members, options.final_lumitexels, options.draw);
+    const BrdfFit final_fit = clusterer.fit(finalists, &materials.brdfs[k]);
     if (!members.empty()) materials.brdfs[k] = final_fit.brdf;
-    result.materials.push_back({{materials.brdfs[k], fit.error}, final_fit, 0});
+    const MaterialModel model{materials.brdfs[k], fit.error};
+    result.materials.push_back({model, final_fit, 0, sigma_of(model, samples_of(observations, finalists), fit)});
   }
   clusterer.assign(all, materials);
   set_labels(materials.label, all, observations.lumitexels(), result);

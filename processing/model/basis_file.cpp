@@ -54,6 +54,26 @@ Json to_json(const Brdf& brdf) {
   return {{"family", to_string(brdf.family)}, {"diffuse", diffuse}, {"lobes", lobes}};
 }
 
+Json to_json(BrdfFamily family, const LobeSigma& sigma) {
+  const LobeKeys keys = lobe_keys(family);
+  Json json = {{keys.log_strength, finite_or_null(sigma.log_strength)}};
+  if (lobe_family(family).aims) json["phi_rad"] = finite_or_null(sigma.aim);
+  json[keys.log_shape] = finite_or_null(sigma.log_shape);
+  return json;
+}
+
+Json to_json(const Brdf& brdf, const BrdfSigma& sigma) {
+  Json diffuse = Json::array(), lobes = Json::array();
+  const auto channels = static_cast<std::size_t>(brdf.channels);
+  for (std::size_t c = 0; c < channels; ++c) diffuse.push_back(finite_or_null(sigma.diffuse[c]));
+  for (const auto& lobe : sigma.lobes) {
+    Json entries = Json::array();
+    for (std::size_t c = 0; c < channels; ++c) entries.push_back(to_json(brdf.family, lobe[c]));
+    lobes.push_back(entries);
+  }
+  return {{"diffuse", diffuse}, {"lobes", lobes}};
+}
+
 Json to_json(const std::vector<Brdf>& brdfs) {
   Json list = Json::array();
   for (const Brdf& brdf : brdfs) list.push_back(to_json(brdf));
@@ -78,7 +98,7 @@ class Field {
   std::vector<Field> elements(int count) const {
     std::vector<Field> all = elements();
     if (all.size() != static_cast<std::size_t>(count)) {
-      fail(std::to_string(all.size()) + " entries", std::to_string(count) + ", one a channel");
+      fail(std::to_string(all.size()) + " entries", std::to_string(count) + ", one a channel or a lobe");
     }
     return all;
   }
@@ -98,6 +118,7 @@ class Field {
       fail(value_.dump(), "a finite number from " + std::to_string(minimum) + " to " + std::to_string(maximum));
     return value_.get<double>();
   }
+  double sigma() const { return is_null() ? std::numeric_limits<double>::quiet_NaN() : number(0.0, std::numeric_limits<double>::max()); }
   double number() const {
     if (!value_.is_number() || !std::isfinite(value_.get<double>())) fail(value_.dump(), "a finite number");
     return value_.get<double>();
@@ -150,6 +171,22 @@ Brdf brdf_from(const Field& field, int channels) {
   return brdf;
 }
 
+BrdfSigma sigma_from(const Field& field, const Brdf& brdf) {
+  const LobeKeys keys = lobe_keys(brdf.family);
+  BrdfSigma sigma;
+  std::size_t c = 0;
+  for (const Field& diffuse : field["diffuse"].elements(brdf.channels)) sigma.diffuse[c++] = diffuse.sigma();
+  for (const Field& entries : field["lobes"].elements(static_cast<int>(brdf.lobes.size()))) {
+    auto& lobe = sigma.lobes.emplace_back();
+    c = 0;
+    for (const Field& entry : entries.elements(brdf.channels)) {
+      const double aim = lobe_family(brdf.family).aims ? entry["phi_rad"].sigma() : std::numeric_limits<double>::quiet_NaN();
+      lobe[c++] = {entry[keys.log_strength].sigma(), entry[keys.log_shape].sigma(), aim};
+    }
+  }
+  return sigma;
+}
+
 std::vector<Brdf> brdfs_from(const Field& field, int channels) {
   std::vector<Brdf> brdfs;
   for (const Field& entry : field.elements()) brdfs.push_back(brdf_from(entry, channels));
@@ -159,7 +196,9 @@ std::vector<Brdf> brdfs_from(const Field& field, int channels) {
 Json to_json(const std::vector<ModelMaterial>& materials) {
   Json list = Json::array();
   for (const ModelMaterial& material : materials) {
-    Json entry = {{"brdf", to_json(material.brdf)}, {"basis", to_json(material.basis)}};
+    Json entry = {{"brdf", to_json(material.brdf)}};
+    if (material.sigma) entry["sigma"] = to_json(material.brdf, *material.sigma);
+    entry["basis"] = to_json(material.basis);
     if (!material.projection_basis.empty()) entry["projection_basis"] = to_json(material.projection_basis);
     list.push_back(entry);
   }
@@ -170,6 +209,7 @@ std::vector<ModelMaterial> materials_from(const Field& field, int channels) {
   std::vector<ModelMaterial> materials;
   for (const Field& entry : field.elements()) {
     ModelMaterial material{brdf_from(entry["brdf"], channels), brdfs_from(entry["basis"], channels), {}};
+    if (entry.has("sigma")) material.sigma = sigma_from(entry["sigma"], material.brdf);
     if (entry.has("projection_basis")) material.projection_basis = brdfs_from(entry["projection_basis"], channels);
     materials.push_back(std::move(material));
   }

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "processing/brdf/brdf.h"
+#include "processing/brdf/brdf_sigma.h"
 #include "processing/image/image.h"
 #include "processing/surface/mesh.h"
 
@@ -25,6 +25,7 @@ struct ModelMaterial {
   Brdf brdf;                // of the cluster
   std::vector<Brdf> basis;  // what its texels mix, weights >= 0
   std::vector<Brdf> projection_basis{};  // as it was before principal function analysis; empty where that did not run
+  std::optional<BrdfSigma> sigma{};      // of brdf; nothing in models of before it was kept
 };
 
 // Which material every texel is, and how it mixes that material's basis: the maps have the atlas's size.

@@ -44,23 +44,51 @@ std::string comparison(const View& view, const ViewPictures& pictures, const Vie
          "</div>\n";
 }
 
-std::string lobe_text(const Brdf& brdf) {
-  std::string text = "diffuse albedo " + std::string(brdf.channels == 3 ? "(red / green / blue) " : "");
-  for (int c = 0; c < brdf.channels; ++c) {
-    text += (c > 0 ? " / " : "") + html::number(std::numbers::pi * brdf.diffuse[static_cast<std::size_t>(c)], 2);
-  }
-  const bool lafortune = brdf.family == BrdfFamily::Lafortune;
-  const std::string strength = lafortune ? "peak (1/sr)" : brdf.family == BrdfFamily::Ggx ? "F0" : "albedo";
-  for (const auto& lobe : brdf.lobes) {
-    text += "; " + std::string(lafortune ? "Lafortune" : brdf.family == BrdfFamily::Ggx ? "GGX" : to_string(brdf.family)) + " lobe, " + strength + " ";
-    for (int c = 0; c < brdf.channels; ++c) {
-      text += (c > 0 ? " / " : "") + html::number(std::exp(lobe[static_cast<std::size_t>(c)].log_strength), 2);
-    }
-    text += lafortune ? ", exponent " : ", alpha ";
-    for (int c = 0; c < brdf.channels; ++c) {
-      text += (c > 0 ? " / " : "") + html::number(std::exp(lobe[static_cast<std::size_t>(c)].log_shape), 2);
-    }
-  }
+// The same figure of every channel; once where all are equal.
+template <typename Value>
+std::string by_channel(int channels, Value value) {
+  const bool same = channels > 1 && value(0) == value(1) && value(0) == value(channels - 1);
+  std::string text = html::number(value(0), 2);
+  for (int c = 1; c < channels && !same; ++c) text += " / " + html::number(value(c), 2);
+  return text;
+}
+
+// The largest of the channels' sigmas, as a share of the figure itself.
+template <typename Sigma>
+std::string plus_minus(int channels, Sigma relative_sigma) {
+  double largest = 0.0;
+  for (int c = 0; c < channels; ++c) largest = std::isnan(relative_sigma(c)) ? NAN : std::max(largest, relative_sigma(c));
+  return std::isnan(largest) ? " (not determined)" : " (± " + html::number(100.0 * largest, 2) + " %)";
+}
+
+const char* strength_name(BrdfFamily family) {
+  if (family == BrdfFamily::Lafortune) return "peak (1/sr)";
+  return family == BrdfFamily::Ggx ? "F0" : "albedo";
+}
+
+std::string family_name(BrdfFamily family) {
+  if (family == BrdfFamily::Ggx) return "GGX";
+  return family == BrdfFamily::Lafortune ? "Lafortune" : "Ward";
+}
+
+std::string lobe_text(const Brdf& brdf, std::size_t index, const std::optional<BrdfSigma>& sigma) {
+  const auto lobe = [&](int c) { return brdf.lobes[index][static_cast<std::size_t>(c)]; };
+  const auto lobe_sigma = [&](int c) { return sigma->lobes[index][static_cast<std::size_t>(c)]; };
+  const int channels = brdf.channels;
+  std::string text = "; " + family_name(brdf.family) + " lobe, " + strength_name(brdf.family) + " " + by_channel(channels, [&](int c) { return std::exp(lobe(c).log_strength); });
+  if (sigma) text += plus_minus(channels, [&](int c) { return lobe_sigma(c).log_strength; });
+  text += std::string(brdf.family == BrdfFamily::Lafortune ? ", exponent " : ", alpha ") + by_channel(channels, [&](int c) { return std::exp(lobe(c).log_shape); });
+  if (sigma) text += plus_minus(channels, [&](int c) { return lobe_sigma(c).log_shape; });
+  return text;
+}
+
+std::string brdf_text(const ModelMaterial& material) {
+  const Brdf& brdf = material.brdf;
+  const auto diffuse = [&](int c) { return brdf.diffuse[static_cast<std::size_t>(c)]; };
+  std::string text = "diffuse albedo " + std::string(brdf.channels == 3 ? "(red / green / blue) " : "") +
+                     by_channel(brdf.channels, [&](int c) { return std::numbers::pi * diffuse(c); });
+  if (material.sigma) text += plus_minus(brdf.channels, [&](int c) { return material.sigma->diffuse[static_cast<std::size_t>(c)] / diffuse(c); });
+  for (std::size_t lobe = 0; lobe < brdf.lobes.size(); ++lobe) text += lobe_text(brdf, lobe, material.sigma);
   return text;
 }
 
@@ -92,7 +120,7 @@ std::string sphere_figures(const Model& model) {
             "<figcaption><span class=\"key\" style=\"background:" + html::css_colour(material_colour(static_cast<int>(m))) +
             "\"></span>" +
             html::escaped("Material " + std::to_string(m) + ", " + share + " % of the measured texels; " +
-                          lobe_text(model.materials[m].brdf)) +
+                          brdf_text(model.materials[m])) +
             "</figcaption></figure>\n";
   }
   return text + "</div>\n";
@@ -161,7 +189,7 @@ std::string material_section(const ReportSubject& subject, const ViewRenderer& r
                        "of that material's "
                        "mean reflectance under one light from above left, all at one exposure. On the object itself "
                        "every texel mixes its "
-                       "material's basis and varies about this mean as far as its photographs ask for it, which may be not at all. An ideal white surface has albedo 1.",
+                       "material's basis and varies about this mean as far as its photographs ask for it, which may be not at all. An ideal white surface has albedo 1. In brackets one sigma, of the channel least sure, by the scatter of the samples; what errs alike in all of them comes on top.",
                        "<div class=\"row\"><div>" + map + "</div><div style=\"grid-column: span 2\">" +
                            sphere_figures(subject.model) + "</div></div>\n");
 }

@@ -45,6 +45,8 @@ Model odd_model() {
   }
   model.projection_weights = Image(6, 5, 5);
   for (float& value : model.projection_weights.data) value = unit(random);
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  model.materials[0].sigma = BrdfSigma{{0.1, unknown, 1.0 / 3.0}, {{LobeSigma{0.2, unknown, 0.01}, LobeSigma{unknown, 1e-300, 2.0}, LobeSigma{}}}};
   model.outliers_csv = "view,reason\na,dark\n";
   for (float& value : model.uncertainty.data) value = unit(random);
   for (std::size_t t = 0; t < model.material.size(); ++t) {
@@ -85,10 +87,25 @@ void expect_equal(const Brdf& a, const Brdf& b) {
   }
 }
 
+void expect_equal(const std::optional<BrdfSigma>& a, const std::optional<BrdfSigma>& b) {
+  const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
+  ASSERT_EQ(a.has_value(), b.has_value());
+  if (!a) return;
+  for (std::size_t c = 0; c < kMaxChannels; ++c) EXPECT_TRUE(same(a->diffuse[c], b->diffuse[c]));
+  ASSERT_EQ(a->lobes.size(), b->lobes.size());
+  for (std::size_t l = 0; l < a->lobes.size(); ++l) {
+    for (std::size_t c = 0; c < kMaxChannels; ++c) {
+      const LobeSigma &s = a->lobes[l][c], &t = b->lobes[l][c];
+      EXPECT_TRUE(same(s.log_strength, t.log_strength) && same(s.log_shape, t.log_shape) && same(s.aim, t.aim)) << l << " " << c;
+    }
+  }
+}
+
 void expect_equal(const std::vector<ModelMaterial>& a, const std::vector<ModelMaterial>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t m = 0; m < a.size(); ++m) {
     expect_equal(a[m].brdf, b[m].brdf);
+    expect_equal(a[m].sigma, b[m].sigma);
     ASSERT_EQ(a[m].basis.size(), b[m].basis.size());
     ASSERT_EQ(a[m].projection_basis.size(), b[m].projection_basis.size());
     for (std::size_t k = 0; k < a[m].basis.size(); ++k) expect_equal(a[m].basis[k], b[m].basis[k]);
