@@ -5,6 +5,7 @@
 #include <string>
 
 #include "processing/brdf/error_choice.h"
+#include "processing/brdf/left_out_folds.h"
 #include "processing/brdf/projected_error.h"
 
 namespace lumitexel {
@@ -12,6 +13,11 @@ namespace {
 
 constexpr const char* kNumber = "number of materials";
 constexpr std::size_t kMostAsked = 5000;  // judges: each is projected four times for every candidate
+
+constexpr std::size_t kFolds = 4;            // of photographs
+constexpr int kRounds = 6;                    // of expectation-maximisation, without the photographs left out
+constexpr double kSettled = 1e-4;
+constexpr double kNextSize = 1.25;            // between two numbers that photographs are asked about
 
 // Of a chain of comparisons, those that a reader needs.
 std::vector<Choice> last_taken_and_nearest_refused(const std::vector<Choice>& choices) {
@@ -22,14 +28,73 @@ std::vector<Choice> last_taken_and_nearest_refused(const std::vector<Choice>& ch
   return kept;
 }
 
+using ErrorsByCandidate = std::vector<std::vector<SquaredError>>;
+
+// The places of `some` in `all`, both ascending.
+LumitexelList places_of(const LumitexelList& some, const LumitexelList& all) {
+  LumitexelList places;
+  for (const std::size_t l : some) places.push_back(static_cast<std::size_t>(std::lower_bound(all.begin(), all.end(), l) - all.begin()));
+  return places;
+}
+
+LumitexelList with_samples_in(const Observations& observations, const LumitexelList& list) {
+  LumitexelList some;
+  std::copy_if(list.begin(), list.end(), std::back_inserter(some), [&](std::size_t l) { return !observations.of(l).empty(); });
+  return some;
+}
+
+ErrorsByCandidate errors_by_photograph(const std::vector<Mixture>& candidates, const Observations& observations, const LumitexelList& learners,
+                                       const LumitexelList& asked, const MaterialFitOptions& fit, double clip) {
+  LumitexelList all;
+  std::set_union(learners.begin(), learners.end(), asked.begin(), asked.end(), std::back_inserter(all));
+  const LumitexelList all_learners = places_of(learners, all), all_asked = places_of(asked, all);
+  const std::size_t photographs = 1 + *std::max_element(observations.view.begin(), observations.view.end());
+  ErrorsByCandidate errors(candidates.size(), std::vector<SquaredError>(photographs));
+  for (std::size_t f = 0; f < kFolds; ++f) {
+    const PhotographFold fold = photograph_fold(observations, all, f, kFolds);
+    const LumitexelList own = with_samples_in(fold.shown, all_learners);
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+      Mixture relearnt = candidates[c];
+      maximise_expectation(relearnt, fold.shown, own, fit, {kRounds, kSettled, false});
+      const auto of_fold = projected_errors_by_photograph(relearnt, fold, own, all_asked, photographs, clip);
+      for (std::size_t v = 0; v < photographs; ++v) errors[c][v] += of_fold[v];
+    }
+  }
+  return errors;
+}
+
+// From few to many, and none so near another that it would say the same.
+std::vector<std::size_t> spaced_sizes(const std::vector<Mixture>& candidates) {
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = candidates.size(); i-- > 0;) {
+    const bool farther = chosen.empty() || static_cast<double>(candidates[i].materials.size()) >= kNextSize * static_cast<double>(candidates[chosen.back()].materials.size());
+    if (farther || i == 0) chosen.push_back(i);
+  }
+  return chosen;
+}
+
+ChosenMaterials choose_by_photographs(const std::vector<Mixture>& candidates, const Observations& observations, const LumitexelList& learners,
+                                      const LumitexelList& asked, const MaterialFitOptions& fit, double clip) {
+  const std::vector<std::size_t> sizes = spaced_sizes(candidates);
+  std::vector<Mixture> spaced;
+  for (const std::size_t i : sizes) spaced.push_back(candidates[i]);
+  const ErrorsByCandidate errors = errors_by_photograph(spaced, observations, learners, asked, fit, clip);
+  std::vector<Predictor> predictors;
+  for (std::size_t i = 0; i < spaced.size(); ++i) predictors.push_back({std::to_string(spaced[i].materials.size()), &errors[i]});
+  std::vector<Choice> choices;
+  const std::size_t best = best_predictor(kNumber, predictors, Claim::Richer, choices);
+  return {sizes[best], last_taken_and_nearest_refused(choices)};
+}
+
 }  // namespace
 
 ChosenMaterials choose_materials(const std::vector<Mixture>& candidates, Presumed presumed, const Observations& observations,
-                                 const LumitexelList& learners, const LumitexelList& judges) {
+                                 const LumitexelList& learners, const LumitexelList& judges, const MaterialFitOptions& fit) {
   if (candidates.size() < 2) return {};
   const LumitexelList asked = thinned(judges, kMostAsked);
   const double clip = clip_level(observations, asked);
-  std::vector<std::vector<SquaredError>> errors;
+  if (photographs_of(observations, learners) >= kFewestPhotographs) return choose_by_photographs(candidates, observations, learners, asked, fit, clip);
+  ErrorsByCandidate errors;
   for (const Mixture& mixture : candidates) errors.push_back(projected_errors(mixture, observations, learners, asked, clip));
   std::vector<Predictor> predictors;
   for (std::size_t i = 0; i < candidates.size(); ++i) predictors.push_back({std::to_string(candidates[i].materials.size()), &errors[i]});

@@ -213,7 +213,7 @@ std::vector<Choice> merge_materials(Mixture& mixture, const Observations& observ
     report(size_of(merged));
   });
   const Presumed presumed = options.fit.estimate_error ? Presumed::Many : Presumed::Few;
-  const ChosenMaterials chosen = choose_materials(candidates, presumed, observations, lumitexels, options.judges.empty() ? lumitexels : options.judges);
+  const ChosenMaterials chosen = choose_materials(candidates, presumed, observations, lumitexels, options.judges.empty() ? lumitexels : options.judges, options.fit);
   mixture = candidates[chosen.candidate];
   return chosen.choices;
 }

@@ -91,4 +91,24 @@ std::vector<SquaredError> projected_errors(const Mixture& mixture, const Observa
   return errors;
 }
 
+std::vector<SquaredError> projected_errors_by_photograph(const Mixture& mixture, const PhotographFold& fold, const LumitexelList& learners,
+                                                         const LumitexelList& asked, std::size_t photographs, double clip) {
+  std::vector<Material> materials = materials_of(mixture, fold.shown);
+  choose_priors(fold.shown, learners, materials);
+  const std::vector<std::size_t>& first = fold.left_out.first;
+  std::vector<SquaredError> by_sample(fold.left_out.samples.size()), errors(photographs);
+  oneapi::tbb::parallel_for(std::size_t{0}, asked.size(), [&](std::size_t l) {
+    const auto shown = fold.shown.of(asked[l]);
+    if (shown.empty() || first[asked[l]] == first[asked[l] + 1]) return;
+    const Material& material = materials[most_probable(materials, shown)];
+    const TexelWeights weights = project_texel(shown, material.basis, material.prior);
+    for (std::size_t s = first[asked[l]]; s < first[asked[l] + 1]; ++s) {
+      const Observation& sample = fold.left_out.samples[s];
+      by_sample[s] = squared_error(predicted_reflectance(material.prepared, weights.weight, sample.geometry), sample, fold.left_out.channels, clip);
+    }
+  });
+  for (std::size_t s = 0; s < by_sample.size(); ++s) errors[fold.left_out.view[s]] += by_sample[s];
+  return errors;
+}
+
 }  // namespace lumitexel

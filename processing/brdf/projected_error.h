@@ -4,6 +4,7 @@
 #pragma once
 
 #include "processing/brdf/left_out_error.h"
+#include "processing/brdf/left_out_folds.h"
 
 namespace lumitexel {
 
@@ -12,5 +13,10 @@ namespace lumitexel {
 // clip: as of left_out_errors. The same bits for any number of threads.
 std::vector<SquaredError> projected_errors(const Mixture& mixture, const Observations& observations, const LumitexelList& learners,
                                            const LumitexelList& asked, double clip);
+
+// The same for whole photographs: each lumitexel's samples in `left_out` (left_out_folds.h) are predicted from those that it has in `shown`, by
+// materials that have learnt from `shown` alone. One entry for each of so many photographs, by Observations::view. learners, asked: of both.
+std::vector<SquaredError> projected_errors_by_photograph(const Mixture& mixture, const PhotographFold& fold, const LumitexelList& learners,
+                                                         const LumitexelList& asked, std::size_t photographs, double clip);
 
 }  // namespace lumitexel
