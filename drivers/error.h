@@ -20,7 +20,7 @@ class Disconnected : public Error { public: using Error::Error; };  // the devic
 class OutOfRange : public Error { public: using Error::Error; };    // asked for more than the device can do
 class Protocol : public Error { public: using Error::Error; };      // an answer that breaks the protocol
 class StorageFull : public Error { public: using Error::Error; };   // no room left for the data
-class Corrupt : public Error { public: using Error::Error; };       // stored bytes are not what was stored
+class Corrupt : public Error { public: using Error::Error; };       // stored bytes are not what was stored (exit code 2)
 class Cancelled : public Error { public: using Error::Error; };     // the caller's stop token was set
 
 // Input from the user that cannot be used (exit code 2). Thrown before anything moves or is written.

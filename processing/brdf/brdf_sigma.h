@@ -11,7 +11,7 @@ namespace lumitexel {
 
 class BrdfParameters;
 
-// NaN: the samples do not determine it, or it stands at a bound. Of logarithms a sigma is a share of the number itself.
+// NaN: no sample sees it, or it stands at a bound. Of logarithms a sigma is a share of the number itself.
 struct LobeSigma {
   double log_strength = 0, log_shape = 0, aim = 0;  // aim: radians; NaN where the family does not aim
 };

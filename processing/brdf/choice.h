@@ -6,20 +6,24 @@
 
 namespace lumitexel {
 
-// Sum over lumitexels of a - b, and the standard error that it would have if in truth there were no difference (rms about zero: a clear
-// difference widens it, too). The lumitexels are taken as independent, which makes it too small where neighbours err alike.
+// Who judges, each taken as independent of the others. Lumitexels are many, and too sure where neighbours err alike; photographs are few.
+enum class Judges { Lumitexels, Photographs };
+
+// Sum over judges of a - b, and its standard error. Of lumitexels the one that it would have if in truth there were no difference (rms about
+// zero: a clear difference widens it, too). Of photographs the one about their mean, since with rms about zero five would have to agree before two
+// standard errors are had; those where both are zero were not asked.
 struct PairedDifference {
   double sum = 0, sigma = 0;
 };
-PairedDifference paired_difference(const std::vector<double>& a, const std::vector<double>& b);
+PairedDifference paired_difference(const std::vector<double>& a, const std::vector<double>& b, Judges judges = Judges::Lumitexels);
 
 // How much less the later of two candidates errs on the same left-out samples, as a share of the earlier one's error.
 struct Gain {
   double share = 0, sigma = 0;
 };
 
-// Of errors per lumitexel, the same lumitexels in both.
-Gain gain_of(const std::vector<double>& later, const std::vector<double>& earlier);
+// Of errors per judge, the same judges in both.
+Gain gain_of(const std::vector<double>& later, const std::vector<double>& earlier, Judges judges = Judges::Lumitexels);
 
 // What a richer model has to gain: half a percent, since two models differ by chance, and surely, since every sample errs a little less; and two
 // standard errors.

@@ -1,5 +1,7 @@
 #include "processing/brdf/choose_materials.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <iterator>
 #include <string>
@@ -11,10 +13,11 @@
 namespace lumitexel {
 namespace {
 
-constexpr const char* kNumber = "number of materials";
+constexpr const char *kNumber = "number of materials", *kNumberByPhotographs = "number of materials, by photographs";
 constexpr std::size_t kMostAsked = 5000;  // judges: each is projected four times for every candidate
 
 constexpr std::size_t kFolds = 4;            // of photographs
+constexpr std::size_t kMostRelearnt = 5000;   // learners that materials are learnt again from: what tells numbers apart, so many do
 constexpr int kRounds = 6;                    // of expectation-maximisation, without the photographs left out
 constexpr double kSettled = 1e-4;
 constexpr double kNextSize = 1.25;            // between two numbers that photographs are asked about
@@ -43,6 +46,18 @@ LumitexelList with_samples_in(const Observations& observations, const LumitexelL
   return some;
 }
 
+// From what is shown alone. A lobe that only the photographs left out show would else stay where they put it, since no other sample sees it.
+Mixture relearnt(Mixture mixture, const Observations& shown, const LumitexelList& learners, const MaterialFitOptions& fit) {
+  const Responsibilities r = responsibilities(mixture, shown, learners);
+  oneapi::tbb::parallel_for(std::size_t{0}, mixture.materials.size(), [&](std::size_t k) {
+    MaterialFitOptions own = fit;
+    own.error = mixture.materials[k].error;
+    mixture.materials[k] = fit_material(samples_of(shown, learners, r, k), shown.channels, nullptr, own).model;
+  });
+  maximise_expectation(mixture, shown, learners, fit, {kRounds, kSettled, false});
+  return mixture;
+}
+
 ErrorsByCandidate errors_by_photograph(const std::vector<Mixture>& candidates, const Observations& observations, const LumitexelList& learners,
                                        const LumitexelList& asked, const MaterialFitOptions& fit, double clip) {
   LumitexelList all;
@@ -54,9 +69,8 @@ ErrorsByCandidate errors_by_photograph(const std::vector<Mixture>& candidates, c
     const PhotographFold fold = photograph_fold(observations, all, f, kFolds);
     const LumitexelList own = with_samples_in(fold.shown, all_learners);
     for (std::size_t c = 0; c < candidates.size(); ++c) {
-      Mixture relearnt = candidates[c];
-      maximise_expectation(relearnt, fold.shown, own, fit, {kRounds, kSettled, false});
-      const auto of_fold = projected_errors_by_photograph(relearnt, fold, own, all_asked, photographs, clip);
+      const Mixture mixture = relearnt(candidates[c], fold.shown, own, fit);
+      const auto of_fold = projected_errors_by_photograph(mixture, fold, own, all_asked, photographs, clip);
       for (std::size_t v = 0; v < photographs; ++v) errors[c][v] += of_fold[v];
     }
   }
@@ -78,11 +92,11 @@ ChosenMaterials choose_by_photographs(const std::vector<Mixture>& candidates, co
   const std::vector<std::size_t> sizes = spaced_sizes(candidates);
   std::vector<Mixture> spaced;
   for (const std::size_t i : sizes) spaced.push_back(candidates[i]);
-  const ErrorsByCandidate errors = errors_by_photograph(spaced, observations, learners, asked, fit, clip);
+  const ErrorsByCandidate errors = errors_by_photograph(spaced, observations, thinned(learners, kMostRelearnt), asked, fit, clip);
   std::vector<Predictor> predictors;
   for (std::size_t i = 0; i < spaced.size(); ++i) predictors.push_back({std::to_string(spaced[i].materials.size()), &errors[i]});
   std::vector<Choice> choices;
-  const std::size_t best = best_predictor(kNumber, predictors, Claim::Richer, choices);
+  const std::size_t best = best_predictor(kNumberByPhotographs, predictors, Claim::Richer, choices, Judges::Photographs);
   return {sizes[best], last_taken_and_nearest_refused(choices)};
 }
 

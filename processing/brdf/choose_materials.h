@@ -4,7 +4,8 @@
 //
 // Where samples know their photographs, and there are kFewestPhotographs, every fourth photograph is left out in turn, materials are learnt again
 // from the others, and each photograph is predicted: what errs together in one photograph, under one lamp, is then no material. Few
-// are presumed, and a gain is sure by its scatter over photographs. Else samples are left out, and the scatter is that over lumitexels.
+// are presumed, and a gain is sure by its scatter over photographs: what shows in three of them or fewer is not. Which lumitexels are whose begins
+// as all photographs have it, and the BRDFs anew. Else samples are left out, and the scatter is that over lumitexels.
 #pragma once
 
 #include <vector>

@@ -17,7 +17,7 @@
 namespace lumitexel {
 
 // What a mixture has to show against the best one before it. All by left-out samples (left_out_error.h), in the sum of the two kinds of
-// error, each a share of the earlier one's; SE: the paired difference's standard error over lumitexels.
+// error, each a share of the earlier one's; SE: the paired difference's standard error over the judges (choice.h).
 enum class Claim {
   Better,    // a gain of over 2 SE, and no loss of as much in either kind: to be wrong about it costs little one way, a model without its
              // highlights the other
@@ -27,7 +27,7 @@ enum class Claim {
              // are the more exact ones. A hundredth of the samples, outliers, may make up most of an error, so that no gain would show
 };
 
-// A mixture by its name, and how it predicted the judges' left-out samples.
+// A mixture by its name, and how it predicted what was left out: an entry a judge.
 struct Predictor {
   std::string name;
   const std::vector<SquaredError>* errors;
@@ -35,6 +35,7 @@ struct Predictor {
 
 // Of mixtures learnt from the same lumitexels and judged by the same others, the most cautious first: the index of the one to keep. A later
 // one takes an earlier one's place where the claim holds, one that predicts numbers always that of one that does not. What each comparison said is added to `choices`, as a choice of `of`.
-std::size_t best_predictor(const std::string& of, const std::vector<Predictor>& predictors, Claim claim, std::vector<Choice>& choices);
+std::size_t best_predictor(const std::string& of, const std::vector<Predictor>& predictors, Claim claim, std::vector<Choice>& choices,
+                           Judges judges = Judges::Lumitexels);
 
 }  // namespace lumitexel

@@ -137,11 +137,11 @@ Eigen::MatrixXd covariance_by_lumitexel(const Brdf& brdf, FitSamples samples, co
   BrdfProblem problem(samples, layout, options.error, options.robust);
   problem.reweight(values);
   const NormalEquations equations = problem.linearise(values);
-  bool ignored = false;
+  bool ignored = false;  // directions that are not determined get no variance; the fit has said so
   const Eigen::MatrixXd inverse = covariance_of(equations, layout.held(values, equations.gradient),
                                                 layout.unseen(equations.matrix.diagonal(), equations.cost), ignored);
-  const double few = static_cast<double>(lumitexels) / static_cast<double>(lumitexels - 1);
-  return few * inverse * problem.scatter_by_lumitexel(values) * inverse;
+  const double few = static_cast<double>(lumitexels) / static_cast<double>(lumitexels - 1), slope = problem.robust_slope(values);
+  return few / (slope * slope) * inverse * problem.scatter_by_lumitexel(values) * inverse;
 }
 
 }  // namespace lumitexel

@@ -40,7 +40,7 @@ BrdfParameters parameters_of(const Brdf& start, const BrdfFitOptions& options);
 BrdfFit fit_brdf(const Brdf& start, FitSamples samples, const BrdfFitOptions& options);
 
 // The covariance of BrdfParameters where only lumitexels err independently, not the samples of one, and where the error model need not be
-// right: H^-1 S H^-1, H the normal matrix and S the scatter of the lumitexels' own gradients (Huber's sandwich, in Liang and Zeger's grouping of 1986).
+// right: H^-1 S H^-1, H the normal matrix, less by what robust weights change with a residual, and S the scatter of the lumitexels' own gradients (Huber's sandwich, in Liang and Zeger's grouping of 1986).
 // brdf: fitted to these samples so. Zero rows as in BrdfFit; all zero without two lumitexels.
 Eigen::MatrixXd covariance_by_lumitexel(const Brdf& brdf, FitSamples samples, const BrdfFitOptions& options);
 

@@ -104,8 +104,8 @@ std::vector<double> relative_errors(const std::vector<SquaredError>& errors, con
   return values;
 }
 
-double excess_in_standard_errors(const std::vector<double>& a, const std::vector<double>& b) {
-  const PairedDifference difference = paired_difference(a, b);
+double excess_in_standard_errors(const std::vector<double>& a, const std::vector<double>& b, Judges judges) {
+  const PairedDifference difference = paired_difference(a, b, judges);
   return difference.sigma > 0.0 ? difference.sum / difference.sigma : 0.0;
 }
 

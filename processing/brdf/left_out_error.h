@@ -1,6 +1,7 @@
 // How well a mixture predicts samples that it was not shown: each of a lumitexel's samples from a material chosen by the others alone.
 #pragma once
 
+#include "processing/brdf/choice.h"
 #include "processing/brdf/mixture.h"
 
 namespace lumitexel {
@@ -27,7 +28,7 @@ std::vector<SquaredError> left_out_errors(const Mixture& mixture, const Observat
 std::vector<double> relative_errors(const std::vector<SquaredError>& errors, const SquaredError& total);
 SquaredError total_error(const std::vector<SquaredError>& errors);
 
-// Sum of a - b over its standard error, the lumitexels taken as independent; 0 if the two are the same.
-double excess_in_standard_errors(const std::vector<double>& a, const std::vector<double>& b);
+// Sum of a - b over its standard error (choice.h); 0 if the two are the same.
+double excess_in_standard_errors(const std::vector<double>& a, const std::vector<double>& b, Judges judges = Judges::Lumitexels);
 
 }  // namespace lumitexel

@@ -10,7 +10,7 @@
 namespace lumitexel {
 
 // How many materials `materials = 0` leaves, of those that merging passes, is for texels to say (choose_materials.h). Where error models are
-// given, few are presumed. Where they are estimated, and to be believed, what evidence asks for is, and there are no more: a pair is merged
+// given, or photographs judge, few are presumed. Where they are estimated, and to be believed, what evidence asks for is, and there are never more: a pair is merged
 // unless keeping it apart gains both
 //   2 * independence * gain > ln(n) for each parameter of one material (the Bayesian information criterion, tempered as in
 //   fit_material.h), and

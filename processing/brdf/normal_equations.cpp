@@ -125,6 +125,23 @@ Eigen::MatrixXd BrdfProblem::scatter_by_lumitexel(const Eigen::VectorXd& at) con
   return scatter;
 }
 
+double BrdfProblem::robust_slope(const Eigen::VectorXd& at) const {
+  if (!robust_) return 1.0;
+  constexpr double kStep = 1e-4;  // of the residual: rounding and curvature are both below 1e-7 then
+  const PreparedBrdf model(layout_.brdf(at));
+  double weights = 0.0, slopes = 0.0;
+  for (const FitSample& sample : samples_) {
+    const SampleMisfit misfit = sample_misfit(error_, *sample.observation, layout_.channels(), predicted_reflectance(model, sample.observation->geometry));
+    const auto weight = [&](double stretch) {
+      return sample.share * robust_weight(error_, {misfit.squares * stretch * stretch, misfit.variances}, layout_.channels());
+    };
+    weights += weight(1.0);
+    // Along the residual, one of as many directions as there are channels, the weight changes as well.
+    slopes += weight(1.0) + (weight(1.0 + kStep) - weight(1.0 - kStep)) / (2.0 * kStep) / layout_.channels();
+  }
+  return weights > 0.0 ? slopes / weights : 1.0;
+}
+
 Eigen::VectorXd damped_step(const NormalEquations& equations, const std::vector<bool>& held, double damping) {
   Eigen::MatrixXd matrix = equations.matrix;
   Eigen::VectorXd right = -equations.gradient;

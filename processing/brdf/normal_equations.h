@@ -33,6 +33,9 @@ class BrdfProblem {
   // Sum over lumitexels of g g^T, g the gradient J^T e of all of a lumitexel's samples together: how far the gradient strays by chance where
   // lumitexels are independent of each other and their own samples are not.
   Eigen::MatrixXd scatter_by_lumitexel(const Eigen::VectorXd& at) const;
+  // Slope of a sample's whitened residual times its robust weight, by the residual, over that weight, mean over samples: 1 where every sample counts
+  // in full, below where an outlying one counts the less the farther out it is. J^T e changes by so much of J^T J.
+  double robust_slope(const Eigen::VectorXd& at) const;
 
  private:
   struct SampleWeight {

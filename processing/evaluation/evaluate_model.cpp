@@ -104,6 +104,7 @@ Evaluation evaluate_model(const Model& model, const CalibratedSession& session, 
   for (const View& view : session.views) {
     const Comparison sums = compare_view(model, renderer, view);
     (view.heldout ? heldout : fit).add(sums);
+    if (view.heldout) evaluation.heldout_views.push_back(errors(model, sums.all));
     const ErrorSums& last = sums.all[index(evaluation.last_stage)];
     evaluation.views.push_back({view.name, view.heldout, last.values() / model.channels, last.error()});
     progress.update(static_cast<std::int64_t>(evaluation.views.size()));

@@ -33,7 +33,8 @@ struct Evaluation {
   std::string session_key;
   bool same_session = false;  // whether the model was fitted to this session
   ErrorByStage fit, heldout;  // pooled; the errors are NaN if no view is of that kind
-  ErrorByStage heldout_measured;   // of the held-out views the measured surface alone
+  std::vector<ErrorByStage> heldout_views;  // each held-out view by itself
+  ErrorByStage heldout_measured;   // of the held-out views the measured surface alone, clipped at that surface's own percentile
   double heldout_measured_share = 0;  // of their object pixels that show it; NaN without any
   std::vector<ViewEvaluation> views;
   std::string provenance_json;  // the model's: what the fit itself found on its samples

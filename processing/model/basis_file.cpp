@@ -98,7 +98,7 @@ class Field {
   std::vector<Field> elements(int count) const {
     std::vector<Field> all = elements();
     if (all.size() != static_cast<std::size_t>(count)) {
-      fail(std::to_string(all.size()) + " entries", std::to_string(count) + ", one a channel or a lobe");
+      fail(std::to_string(all.size()) + " entries", std::to_string(count) + ", as many as there are channels, or lobes of the BRDF");
     }
     return all;
   }

@@ -28,7 +28,9 @@ std::vector<std::string> changed_files(const fs::path& directory) {
   std::vector<std::string> changed;
   for (const auto& [name, hash] : document.at("sha256").items()) {
     const fs::path file = directory / name;
-    if (fs::is_regular_file(file) && nlohmann::json(sha256_hex(read_whole_file(file))) != hash) changed.push_back(name);
+    std::error_code unreadable;
+    const bool there = fs::is_regular_file(file, unreadable);
+    if (!there || nlohmann::json(sha256_hex(read_whole_file(file))) != hash) changed.push_back(name);
   }
   return changed;
 }

@@ -11,8 +11,7 @@ namespace lumitexel {
 // Of every file in the folder but model.json, which is to carry them.
 std::map<std::string, std::string> file_hashes(const std::filesystem::path& directory);
 
-// Those whose bytes are others than model.json says, in order; a file that is missing is not listed, it fails when it is read. Empty where
-// model.json carries no hashes.
+// Those whose bytes are others than model.json says, or that are missing, in order. Empty where model.json carries no hashes.
 std::vector<std::string> changed_files(const std::filesystem::path& directory);
 
 }  // namespace lumitexel

@@ -44,7 +44,7 @@ std::string choice_section(const Json& provenance) {
                        "by how much the second errs less, as a share of the first one's error. Other lobes, functions and materials are taken for half a percent "
                        "and two sigmas of gain; another source of errors for two sigmas, and estimated ones, which make the more exact fits, also if "
                        "they lose less than 2 % and not surely more than half a percent. Sigmas take surface points as independent, "
-                       "which neighbours are not: they are rather too small.",
+                       "which neighbours are not, and are rather too small; by photographs they take photographs as independent.",
                        table + normals);
 }
 

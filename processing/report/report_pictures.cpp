@@ -53,12 +53,14 @@ std::string by_channel(int channels, Value value) {
   return text;
 }
 
-// The largest of the channels' sigmas, as a share of the figure itself.
+// The largest of the channels' sigmas, as a share of the figure itself, of those that have one: nothing else scatters.
 template <typename Sigma>
 std::string plus_minus(int channels, Sigma relative_sigma) {
-  double largest = 0.0;
-  for (int c = 0; c < channels; ++c) largest = std::isnan(relative_sigma(c)) ? NAN : std::max(largest, relative_sigma(c));
-  return std::isnan(largest) ? " (not determined)" : " (± " + html::number(100.0 * largest, 2) + " %)";
+  double largest = -1.0;
+  for (int c = 0; c < channels; ++c) {
+    if (std::isfinite(relative_sigma(c))) largest = std::max(largest, relative_sigma(c));
+  }
+  return largest < 0.0 ? " (at a bound, or seen by no sample)" : " (± " + html::number(100.0 * largest, 2) + " %)";
 }
 
 const char* strength_name(BrdfFamily family) {
@@ -189,7 +191,7 @@ std::string material_section(const ReportSubject& subject, const ViewRenderer& r
                        "of that material's "
                        "mean reflectance under one light from above left, all at one exposure. On the object itself "
                        "every texel mixes its "
-                       "material's basis and varies about this mean as far as its photographs ask for it, which may be not at all. An ideal white surface has albedo 1. In brackets one sigma, of the channel least sure, by the scatter of the samples; what errs alike in all of them comes on top.",
+                       "material's basis and varies about this mean as far as its photographs ask for it, which may be not at all. An ideal white surface has albedo 1. In brackets one sigma, of the channel least sure, by the scatter of whole surface points; what errs alike in all of them comes on top.",
                        "<div class=\"row\"><div>" + map + "</div><div style=\"grid-column: span 2\">" +
                            sphere_figures(subject.model) + "</div></div>\n");
 }

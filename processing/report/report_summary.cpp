@@ -137,7 +137,7 @@ std::string headline(const ReportSubject& subject, const Json& summary) {
                      "of the surface has a reflectance of its own as far as its photographs ask for one, so the object can be shown from any side under any light.</p>\n<p class=\"finding\">";
   if (summary.at("prediction").is_object()) text += html::escaped(prediction_text(summary.at("prediction"))) + " ";
   text += html::escaped(surface_text(summary)) + "</p>\n";
-  const std::string caution = subject.evaluation != nullptr ? in_words(stage_cautions(*subject.evaluation)) : "";
+  const std::string caution = subject.evaluation != nullptr ? in_words(stage_cautions(*subject.evaluation), subject.evaluation->last_stage) : "";
   if (!caution.empty()) text += "<p class=\"caution\">Caution: " + html::escaped(caution) + ".</p>\n";
   return text + tiles(subject, summary) + "</header>\n";
 }

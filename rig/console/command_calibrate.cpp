@@ -14,6 +14,8 @@
 #include "rig/console/command.h"
 #include "rig/console/input_folder.h"
 #include "rig/console/named_value.h"
+#include "rig/console/output_file.h"
+#include "rig/whole_file.h"
 
 namespace lumitexel {
 namespace {
@@ -256,12 +258,6 @@ std::string step_help() {
   return text;
 }
 
-void write_text(const std::string& path, const std::string& content) {
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file << content;
-  if (!file.flush()) throw Error(path + ": cannot be written");
-}
-
 void copy_lens_file(const fs::path& derived, const std::string& out) {
   if (!fs::exists(derived / "lens.json")) {
     throw BadInput("--lens-out", "this session's boards calibrate no lens",
@@ -278,6 +274,8 @@ CalibrationOptions steps_of(const CalibrateOptions& options) {
 
 CommandResult run(const CalibrateOptions& options, CommandContext& context) {
   const CalibrationOptions steps = steps_of(options);
+  require_writable_folder("--page", options.page);
+  require_writable_folder("--lens-out", options.lens_out);
   const SessionStore store = session_given("SESSION", options.session);
   CalibrationSummary summary;
   const CalibratedSession session = calibrate_session(store, context.progress, &summary, steps);
@@ -293,7 +291,7 @@ CommandResult run(const CalibrateOptions& options, CommandContext& context) {
   const fs::path derived = store.derived_directory() / "calibrated" / session.key;
   if (!options.lens_out.empty()) copy_lens_file(derived, options.lens_out);
   if (!options.page.empty()) {
-    write_text(options.page, calibration_report(session, summary, derived, truth ? truth->text : "", result.json.dump()));
+    write_whole_file(options.page, calibration_report(session, summary, derived, truth ? truth->text : "", result.json.dump()));
   }
   result.text = text.str();
   return result;

@@ -45,7 +45,7 @@ std::string measured_rows(const Evaluation& evaluation) {
 }
 
 std::string caution_line(const Evaluation& evaluation) {
-  const std::string words = in_words(stage_cautions(evaluation));
+  const std::string words = in_words(stage_cautions(evaluation), evaluation.last_stage);
   return words.empty() ? "" : "caution: " + words + "\n";
 }
 

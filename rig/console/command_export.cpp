@@ -21,6 +21,18 @@ constexpr const char* kFormats =
     "blender: scene.py, run by blender --python scene.py, and reference.exr, our rendering of it\n"
     "maps: every map as EXR and PNG, told apart in maps.json, with mesh.ply";
 
+// What to do with the main file, in the folder of the export.
+const char* how_to_open(ExportFormat format) {
+  switch (format) {
+    case ExportFormat::Gltf: return "any glTF 2.0 viewer opens it";
+    case ExportFormat::Mitsuba: return "mitsuba scene.xml";
+    case ExportFormat::Materialx: return "MaterialXView --material model.mtlx --mesh mesh.obj";
+    case ExportFormat::Blender: return "blender --python scene.py";
+    case ExportFormat::Maps: return "tells the maps apart";
+  }
+  return "";
+}
+
 struct ExportSettings {
   std::string model, to, out, mesh;
 };
@@ -37,8 +49,8 @@ CommandResult export_command(const ExportSettings& settings, CommandContext& con
                            {"relative_rms", loss.error.relative_rms}, {"clipped_rms", loss.error.clipped_rms},
                            {"sqrt_rms", loss.error.sqrt_rms}}}};
   char line[240];
-  std::snprintf(line, sizeof line, "%s/%s\nconversion loss over %d renderings: PSNR %.1f dB, relative %.4f, clipped %.4f, sqrt %.4f\n",
-                settings.out.c_str(), main_file(format), loss.views, loss.error.psnr_db, loss.error.relative_rms, loss.error.clipped_rms,
+  std::snprintf(line, sizeof line, "%s/%s: %s\nconversion loss over %d renderings: PSNR %.1f dB, relative %.4f, clipped %.4f, sqrt %.4f\n",
+                settings.out.c_str(), main_file(format), how_to_open(format), loss.views, loss.error.psnr_db, loss.error.relative_rms, loss.error.clipped_rms,
                 loss.error.sqrt_rms);
   result.text = line;
   return result;

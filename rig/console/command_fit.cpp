@@ -194,8 +194,10 @@ std::string bases_line(const FitSettings& settings, const FitSummary& summary) {
   if (settings.bases != "auto" || settings.method == "paper" || settings.plain_projection) return "";
   const auto mixed = std::count_if(summary.bases_by_material.begin(), summary.bases_by_material.end(),
                                    [](std::size_t bases) { return bases > 1 + kVariations; });
-  return line("bases: texels of %td of %zu materials mix other materials too, the others' only variations of their own\n", mixed,
-              summary.bases_by_material.size());
+  const auto all = static_cast<std::ptrdiff_t>(summary.bases_by_material.size());
+  if (mixed == all) return all > 1 ? "bases: texels of every material mix other materials too\n" : "";
+  if (mixed == 0) return "bases: texels mix only variations of their own material\n";
+  return line("bases: texels of %td of %td materials mix other materials too, the others' only variations of their own\n", mixed, all);
 }
 
 const char* outcome(const Choice& choice) {
@@ -219,7 +221,7 @@ std::string choices_table(const FitSummary& summary) {
   std::string rows;
   for (const FitChoices& fit : summary.choices) rows += choices_of(fit);
   if (rows.empty()) return "";
-  return "What left-out samples said. Gain: how much of their error a candidate saves, +- standard error. Taken from 0.5 % and two standard errors on; a "
+  return "What left-out samples said, photographs where a row names them. Gain: how much of their error a candidate saves, +- standard error. Taken from 0.5 % and two standard errors on; a "
          "source of errors from two, estimated ones also if they lose next to nothing\n" + rows;
 }
 
@@ -280,11 +282,11 @@ std::string stages_table(const std::vector<StageCost>& stages) {
 }
 
 std::string fit_text(const FitSettings& settings, const FitOptions& options, const FitSummary& summary) {
-  std::string text = line("%s: %zu materials, %zu lumitexels, %zu samples (%.1f a lumitexel; %zu lumitexels have none)\n",
-                          settings.out.c_str(), summary.texels_by_material.size(), summary.lumitexels, summary.samples,
+  std::string text = line("%s: %zu %s, %zu lumitexels, %zu samples (%.1f a lumitexel; %zu lumitexels have none)\n",
+                          settings.out.c_str(), summary.texels_by_material.size(), summary.texels_by_material.size() == 1 ? "material" : "materials", summary.lumitexels, summary.samples,
                           static_cast<double>(summary.samples) / static_cast<double>(summary.lumitexels), summary.starved);
   if (summary.unseen_triangles > 0) text += line("  %zu triangles are seen by no view\n", summary.unseen_triangles);
-  if (summary.texels_by_material.size() < static_cast<std::size_t>(std::max(options.materials, 0))) {
+  if (!settings.materials.empty() && summary.texels_by_material.size() < static_cast<std::size_t>(std::max(options.materials, 0))) {
     text += line("  fewer materials than the %d asked for: its samples do not tell more apart\n", options.materials);
   }
   text += layout_text(summary.layout);

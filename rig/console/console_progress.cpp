@@ -56,8 +56,9 @@ void ConsoleProgress::finish() {
 void ConsoleProgress::finish_locked() {
   if (!open_) return;
   const double elapsed_s = seconds(std::chrono::steady_clock::now() - started_);
+  const std::string unit = last_done_ == 1 && unit_.ends_with('s') ? unit_.substr(0, unit_.size() - 1) : unit_;
   std::fprintf(stderr, "%s%-28s %lld %s in %.1f s\n", terminal_ ? "\r\033[K" : "", stage_.c_str(),
-               static_cast<long long>(last_done_), unit_.c_str(), elapsed_s);
+               static_cast<long long>(last_done_), unit.c_str(), elapsed_s);
   open_ = false;
 }
 

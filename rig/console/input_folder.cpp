@@ -54,7 +54,7 @@ std::string what_folder_is(const fs::path& path) {
 Model model_given(const std::string& where, const fs::path& folder) {
   require(where, folder, kModelFile, "the folder of a model, as `lumitexel fit` writes it, with a model.json");
   for (const std::string& file : changed_files(folder)) {
-    std::fprintf(stderr, "note: %s is not as the fit wrote it: its SHA-256 is not the one in model.json; going on with it as it is\n", (folder / file).c_str());
+    std::fprintf(stderr, "note: %s is not as it was written: its SHA-256 is not the one in model.json, or it is missing; going on with what is there\n", (folder / file).c_str());
   }
   return read_model(folder);
 }

@@ -49,8 +49,9 @@ std::stop_token stop_on_interrupt() {
 }
 
 void end_on_interrupt() {
-  std::signal(SIGINT, end_with_a_word);
-  std::signal(SIGTERM, end_with_a_word);
+  for (const int number : {SIGINT, SIGTERM}) {
+    if (std::signal(number, SIG_IGN) != SIG_IGN) std::signal(number, end_with_a_word);  // who ignores it, as a script's background does, goes on to
+  }
 }
 
 }  // namespace lumitexel

@@ -89,14 +89,27 @@ BrdfValues values_of(const Brdf& brdf) {
   return [brdf](const LobeGeometry& geometry) { return evaluate(brdf, geometry); };
 }
 
-// As `fit --materials 1 --family auto` does it, on all of the sphere.
-MaterialFit automatic_fit(const Observations& observations, const LumitexelList& lumitexels, int most_lobes) {
+// These lumitexels and no others.
+Observations alone(const Observations& observations, const LumitexelList& lumitexels) {
+  Observations some;
+  some.channels = observations.channels;
+  for (const std::size_t l : lumitexels) {
+    const auto samples = observations.of(l);
+    some.samples.insert(some.samples.end(), samples.begin(), samples.end());
+    some.first.push_back(some.samples.size());
+  }
+  return some;
+}
+
+// As `fit --materials 1 --family auto` does it, of an object that has no other lumitexels.
+MaterialFit automatic_fit(const Observations& sphere, const LumitexelList& selected, int most_lobes) {
+  const Observations observations = alone(sphere, selected);
   ClusterOptions options;
   options.materials = 1;
   options.any_family = true;
   options.fit.most_lobes = most_lobes;
   options.fit.error = error_model(observations, {});
-  const Clustering clustering = cluster_materials(observations, lumitexels, options, [](int) {});
+  const Clustering clustering = cluster_materials(observations, with_samples(observations), options, [](int) {});
   return {clustering.materials[0].model, clustering.materials[0].fit, 0.0};
 }
 

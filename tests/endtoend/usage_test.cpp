@@ -76,6 +76,8 @@ TEST(Usage, WhereNothingCanBeWrittenIsSaidBeforeTheWork) {
   const std::string here = folder.path().string(), nowhere = (folder / "missing" / "x").string();
   for (const std::string& out : {here, nowhere}) {
     expect_refused("view M --out " + out, {"--out", "expected a file"});
+    expect_refused("calibrate S --page " + out, {"--page", "expected a file"});
+    expect_refused("calibrate S --lens-out " + out, {"--lens-out", "expected a file"});
     expect_refused("report M --page " + out, {"--page", "expected a file"});
     expect_refused("render M --camera '0,0,1;0,0,0;0,1,0;30;4x4' --light 0,0,1 --out " + out, {"--out", "expected a file"});
   }

@@ -118,24 +118,42 @@ TEST_F(EvaluateModel, TheMeasuredSurfaceAloneIsJudgedBesideTheWhole) {
   EXPECT_GT(evaluation.heldout[2]->relative_rms, 0.3);
 }
 
-TEST_F(EvaluateModel, CautionsWhereKeptOutPhotographsWerePredictedBetterBefore) {
-  Evaluation evaluation = evaluated();
-  EXPECT_TRUE(stage_cautions(evaluation).empty());
-  EXPECT_EQ(in_words({}), "");
-  evaluation.heldout[0]->clipped_rms = 0.4;
-  evaluation.heldout[1]->clipped_rms = 0.3;
-  evaluation.heldout[2]->clipped_rms = 0.301;  // by chance
-  EXPECT_TRUE(stage_cautions(evaluation).empty());
-  evaluation.heldout[2]->clipped_rms = 0.5;
+// Errors of single, cluster and projection in each photograph kept out, the same by every measure.
+Evaluation kept_out(const std::vector<std::array<double, 3>>& photographs) {
+  Evaluation evaluation;
+  evaluation.last_stage = FitStage::Projection;
+  evaluation.provenance_json = "{}";
+  std::array<double, 3> mean{};
+  for (const auto& errors : photographs) {
+    ErrorByStage& view = evaluation.heldout_views.emplace_back();
+    for (std::size_t stage = 0; stage < 3; ++stage) {
+      view[stage] = ImageError{errors[stage], errors[stage], errors[stage], 20.0};
+      mean[stage] += errors[stage] / static_cast<double>(photographs.size());
+    }
+  }
+  for (std::size_t stage = 0; stage < 3; ++stage) evaluation.heldout[stage] = ImageError{mean[stage], mean[stage], mean[stage], 20.0};
+  return evaluation;
+}
+
+TEST(StageCaution, IsGivenWhereAnEarlierStageSurelyPredictsBetter) {
+  const Evaluation evaluation = kept_out({{0.5, 0.3, 0.40}, {0.5, 0.2, 0.32}, {0.5, 0.4, 0.48}, {0.5, 0.3, 0.40}});
   const auto cautions = stage_cautions(evaluation);
-  ASSERT_EQ(cautions.size(), 1u);
+  ASSERT_EQ(cautions.size(), 2u);
   EXPECT_STREQ(cautions[0].measure, "clipped");
   EXPECT_EQ(cautions[0].better, FitStage::Cluster);
-  EXPECT_NE(in_words(cautions).find("clipped 0.3 at stage cluster, 0.5 at the last"), std::string::npos) << in_words(cautions);
-  const Json json = Json::parse(evaluation_json(evaluation));
-  EXPECT_EQ(json.at("heldout_better_before_last_stage")[0].at("better_stage"), "cluster");
-  evaluation.heldout.fill(ImageError{NAN, NAN, NAN, NAN});  // nothing kept out
-  EXPECT_TRUE(stage_cautions(evaluation).empty());
+  const std::string words = in_words(cautions, evaluation.last_stage);
+  EXPECT_NE(words.find("clipped 0.3 at stage cluster, 0.4 at projection; square roots 0.3"), std::string::npos) << words;
+  EXPECT_NE(words.find("--bases 1"), std::string::npos) << words;
+  EXPECT_EQ(Json::parse(evaluation_json(evaluation)).at("heldout_better_before_last_stage")[0].at("better_stage"), "cluster");
+}
+
+TEST(StageCaution, IsNotGivenByChanceNorOfFewPhotographs) {
+  EXPECT_TRUE(stage_cautions(kept_out({{0.5, 0.3, 0.2}, {0.5, 0.3, 0.25}, {0.5, 0.3, 0.2}})).empty()) << "better";
+  EXPECT_TRUE(stage_cautions(kept_out({{0.5, 0.3, 0.60}, {0.5, 0.3, 0.29}, {0.5, 0.3, 0.30}, {0.5, 0.3, 0.28}})).empty()) << "one photograph alone";
+  EXPECT_TRUE(stage_cautions(kept_out({{0.5, 0.3, 0.4}, {0.5, 0.3, 0.4}})).empty()) << "two photographs";
+  EXPECT_TRUE(stage_cautions(kept_out({{NAN, NAN, NAN}, {NAN, NAN, NAN}, {NAN, NAN, NAN}})).empty());
+  EXPECT_TRUE(stage_cautions({}).empty()) << "nothing kept out";
+  EXPECT_EQ(in_words({}, FitStage::Normal), "");
 }
 
 TEST_F(EvaluateModel, TheJsonHasEveryKeyThatIsPromised) {
