@@ -2,6 +2,7 @@
 
 #include <oneapi/tbb/parallel_for.h>
 
+#include <array>
 #include <atomic>
 #include <cmath>
 
@@ -10,9 +11,9 @@
 namespace lumitexel {
 namespace {
 
-struct Moments {
-  ChannelValues sum{}, squares{};
-};
+constexpr int kReplicates = 2;
+
+using Replicates = std::array<ChannelValues, kReplicates>;  // sums of their paths' radiances
 
 // Paths from the camera through a lumitexel, back to the view's lamp by way of other surfaces.
 class Follower {
@@ -30,11 +31,12 @@ class Follower {
     path.straight_light = false;
     return path;
   }
-  Moments follow(const Eigen::Vector3d& position, std::size_t lumitexel, std::size_t view, std::size_t& dropped) {
-    Moments moments;
+  Replicates follow(const Eigen::Vector3d& position, std::size_t lumitexel, std::size_t view, std::size_t& dropped) {
+    Replicates sums{};
     const Eigen::Vector3d direction = (position - eye_).normalized();
     for (int path = 0; path < paths_; ++path) {
-      SampleSequence numbers(static_cast<int>(lumitexel), static_cast<int>(view), 0, static_cast<std::uint32_t>(path));
+      const int replicate = path % kReplicates;
+      SampleSequence numbers(static_cast<int>(lumitexel), static_cast<int>(view), replicate, static_cast<std::uint32_t>(path / kReplicates));
       const PathSample sample = tracer_.trace(eye_, direction, numbers);
       bool finite = true;
       for (const double value : sample.radiance) finite = finite && std::isfinite(value);
@@ -42,12 +44,10 @@ class Follower {
         ++dropped;
         continue;
       }
-      for (std::size_t c = 0; c < sample.radiance.size(); ++c) {
-        moments.sum[c] += sample.radiance[c];
-        moments.squares[c] += sample.radiance[c] * sample.radiance[c];
-      }
+      ChannelValues& sum = sums[static_cast<std::size_t>(replicate)];
+      for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += sample.radiance[c];
     }
-    return moments;
+    return sums;
   }
 
  private:
@@ -64,14 +64,14 @@ class TileLight {
   TileLight(const CalibratedSession& session, const LumitexelTile& tile, int channels, int paths)
       : reflectance(tile.reflectance.size(), 0.0f), variance(tile.reflectance.size(), 0.0f), session_(session), tile_(tile), channels_(static_cast<std::size_t>(channels)), paths_(paths) {}
 
-  void set(std::size_t sample, std::size_t lumitexel, const Moments& moments) {
+  void set(std::size_t sample, std::size_t lumitexel, const Replicates& sums) {
     const View& view = session_.views[tile_.view[sample]];
     for (std::size_t c = 0; c < channels_; ++c) {
       const double irradiance = view.light.irradiance(tile_.position[lumitexel], static_cast<int>(c));
-      const double mean = moments.sum[c] / paths_, spread = std::max(0.0, moments.squares[c] / paths_ - mean * mean) / std::max(1, paths_ - 1);
       if (!(irradiance > 0.0)) continue;
-      reflectance[sample * channels_ + c] = static_cast<float>(mean / irradiance);
-      variance[sample * channels_ + c] = static_cast<float>(spread / (irradiance * irradiance));
+      const double mean = (sums[0][c] + sums[1][c]) / (paths_ * irradiance), half_difference = (sums[0][c] - sums[1][c]) / (paths_ * irradiance);
+      reflectance[sample * channels_ + c] = static_cast<float>(mean);
+      variance[sample * channels_ + c] = static_cast<float>(half_difference * half_difference);
     }
   }
 

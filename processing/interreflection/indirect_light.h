@@ -12,11 +12,13 @@ namespace lumitexel {
 
 struct IndirectOptions {
   int bounces = 2;    // between the object's surfaces
-  int paths = 8;      // a sample
+  int paths = 8;      // a sample; even, half of them in each replicate
 };
 
 // As LumitexelTile::reflectance and variance, one entry a tile: what to subtract from each sample (radiance by way of other
-// surfaces over the lamp's irradiance, 1/sr), and its variance, as the paths scatter.
+// surfaces over the lamp's irradiance, 1/sr), and its variance. Of each sample two replicates are followed that are independent of each other
+// (sample_sequence.h) and each well stratified in itself: a quarter of their difference squared is the variance of their mean, rough for a
+// sample (one degree of freedom) and right on average. The scatter of single paths is not: in an open bowl it is three times too large.
 struct IndirectLight {
   std::vector<std::vector<float>> reflectance, variance;
   std::size_t samples = 0;          // that were followed

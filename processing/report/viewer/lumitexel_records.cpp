@@ -9,6 +9,7 @@
 #include "processing/brdf/ordered_sum.h"
 #include "processing/fit/observe.h"
 #include "processing/fit/provenance.h"
+#include "processing/interreflection/indirect_light.h"
 #include "processing/report/viewer/listed_outliers.h"
 #include "processing/surface/best_view.h"
 #include "processing/surface/gather_lumitexels.h"
@@ -19,6 +20,7 @@ namespace {
 using nlohmann::json;
 
 constexpr auto kUsed = static_cast<std::uint8_t>(SampleVerdict::Used);
+constexpr std::size_t kFoundShare = 1;  // channel of Model::indirect
 
 // The error model of every material, if it was the one that the fit's options gave to all of them.
 std::optional<ErrorModel> recorded_error(const json& provenance) {
@@ -44,6 +46,36 @@ void turn_to_fitted(const Model& model, LumitexelSet& set) {
       if (!normal.isZero()) tile.normal[k] = normal.normalized();
     }
   }
+}
+
+// The lumitexels that the fit took light of other surfaces from.
+std::vector<bool> less_indirect(const Model& model, const LumitexelSet& set) {
+  std::vector<bool> wanted;
+  for (const LumitexelTile& tile : set.tiles) {
+    for (const std::uint32_t texel : tile.texel) wanted.push_back(model.indirect.data[std::size_t{2} * texel + kFoundShare] > 0.0f);
+  }
+  return wanted;
+}
+
+// Takes light of other surfaces, as the finished model sends it, out of the samples that the fit saw without it. What it took, as LumitexelTile::reflectance, all
+// tiles in a row; empty where the fit took none.
+std::vector<float> take_indirect(const Model& model, const CalibratedSession& session, LumitexelSet& set, Progress& progress) {
+  std::vector<float> taken;
+  if (model.indirect_bounces == 0) return taken;
+  progress.begin("light between surfaces", 1, "rounds");
+  IndirectOptions options;
+  options.bounces = model.indirect_bounces;
+  const IndirectLight light = indirect_light(session, set, less_indirect(model, set), model, last_stage(model), options);
+  for (std::size_t t = 0; t < set.tiles.size(); ++t) {
+    LumitexelTile& tile = set.tiles[t];
+    for (std::size_t k = 0; k < tile.reflectance.size(); ++k) {
+      tile.reflectance[k] -= light.reflectance[t][k];
+      tile.variance[k] += light.variance[t][k];
+    }
+    taken.insert(taken.end(), light.reflectance[t].begin(), light.reflectance[t].end());
+  }
+  progress.update(1);
+  return taken;
 }
 
 struct SampleRecord {
@@ -89,10 +121,12 @@ std::vector<SampleRecord> predict_all(const Predictor& predict, const Observatio
   return samples;
 }
 
-void append(const Observation& sample, const SampleRecord& record, const LumitexelRecords& records, std::uint8_t reason, ViewRecords& view) {
+// indirect: of the sample's channels, what was taken out of it; or null.
+void append(const Observation& sample, const SampleRecord& record, const float* indirect, const LumitexelRecords& records, std::uint8_t reason, ViewRecords& view) {
   for (std::size_t c = 0; c < static_cast<std::size_t>(records.channels); ++c) {
-    view.measured.push_back(sample.reflectance[c]);
-    view.predicted.push_back(static_cast<float>(record.predicted[c]));
+    const float between = indirect != nullptr ? indirect[c] : 0.0f;
+    view.measured.push_back(sample.reflectance[c] + between);
+    view.predicted.push_back(static_cast<float>(record.predicted[c]) + between);
   }
   if (records.weighed) {
     view.share.push_back(static_cast<float>(record.weight));
@@ -101,21 +135,25 @@ void append(const Observation& sample, const SampleRecord& record, const Lumitex
   view.reason.push_back(reason);
 }
 
-// Observations are in the order of lumitexels, then of views, but lack the samples that no fit may meet.
+// Observations are in the order of lumitexels, then of views, but lack the samples that no fit may meet; `indirect` (of take_indirect) has them.
 void sort_by_view(const CalibratedSession& session, const Model& model, const Observations& observations,
-                  const std::vector<SampleRecord>& samples, LumitexelRecords& records) {
+                  const std::vector<SampleRecord>& samples, const std::vector<float>& indirect, LumitexelRecords& records) {
   const auto listed = listed_outliers(model.outliers_csv, model.width);
+  const auto channels = static_cast<std::size_t>(records.channels);
+  std::size_t gathered = 0;
   for (std::size_t i = 0; i < observations.lumitexels(); ++i) {
     std::size_t s = observations.first[i];
     for (std::size_t k = 0; k < records.used_views.size(); ++k) {
       ViewRecords& view = records.by_view[k];
       if (view.verdict[i] != kUsed) continue;
+      const float* between = indirect.empty() ? nullptr : &indirect[channels * gathered];
+      ++gathered;
       if (s == observations.first[i + 1] || observations.view[s] != records.used_views[k]) {
         view.verdict[i] = kBelowFittedNormal;
         continue;
       }
       const auto found = listed.find({session.views[records.used_views[k]].name, records.texel[i]});
-      append(observations.samples[s], samples[s], records, found == listed.end() ? 0 : static_cast<std::uint8_t>(1 + static_cast<int>(found->second)), view);
+      append(observations.samples[s], samples[s], between, records, found == listed.end() ? 0 : static_cast<std::uint8_t>(1 + static_cast<int>(found->second)), view);
       ++s;
     }
   }
@@ -131,6 +169,7 @@ LumitexelRecords lumitexel_records(const Model& model, const CalibratedSession& 
   check_session(model, session, provenance, atlas);
   GatheredLumitexels gathered = gather_lumitexels(session, atlas, scene, progress);
   turn_to_fitted(model, gathered.set);
+  const std::vector<float> indirect = take_indirect(model, session, gathered.set, progress);
   const Observations observations = observe(session, gathered.set);
 
   const Predictor predictor{model, recorded_error(provenance)};
@@ -143,7 +182,7 @@ LumitexelRecords lumitexel_records(const Model& model, const CalibratedSession& 
     records.by_view.emplace_back();
     for (const SampleVerdict verdict : verdicts) records.by_view.back().verdict.push_back(static_cast<std::uint8_t>(verdict));
   }
-  sort_by_view(session, model, observations, predict_all(predictor, observations, records.texel), records);
+  sort_by_view(session, model, observations, predict_all(predictor, observations, records.texel), indirect, records);
   return records;
 }
 

@@ -18,7 +18,7 @@ inline constexpr std::uint8_t kBelowFittedNormal = 9;
 // Of one view, one entry a lumitexel whose verdict is SampleVerdict::Used, in the lumitexels' order.
 struct ViewRecords {
   std::vector<std::uint8_t> verdict;        // of every lumitexel
-  std::vector<float> measured, predicted;   // channels interleaved: r = f cos_i, 1/sr
+  std::vector<float> measured, predicted;   // channels interleaved: r = f cos_i, 1/sr; as photographed, light from other surfaces of the object included
   // Only where the fit's error model is on record (LumitexelRecords::weighed), else empty.
   std::vector<float> share;                 // of the sample in the least squares for its texel's weights; a lumitexel's shares sum to 1
   std::vector<float> scales_off;            // root mean square of the channels' residuals over the error model's scales
@@ -36,7 +36,8 @@ struct LumitexelRecords {
 
 // Gathers as fit_model does and predicts with all that the model holds, on its own normals. The share and the scales need errors that
 // were given to the fit: those that a fit estimates it does not keep. Where light between surfaces was taken out of the samples
-// (Model::indirect_bounces), `measured` still has it, and the scales are those of such samples. Throws BadInput if the model was not fitted to this session.
+// (Model::indirect_bounces, Model::indirect), it is followed by paths again and is in `measured` and `predicted`; shares and scales are those of
+// samples without it, as in the fit. Throws BadInput if the model was not fitted to this session.
 LumitexelRecords lumitexel_records(const Model& model, const CalibratedSession& session, Progress& progress);
 
 // Root mean square of the residuals over a texel's samples and channels, 1/sr, by atlas index; -1 where it has none.

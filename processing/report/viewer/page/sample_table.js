@@ -40,7 +40,7 @@ function sampleTable({ texel, distance, looks }) {
   const taken = looks.filter((look) => look.verdict === used), rejected = looks.filter((look) => ![outside, hidden, used].includes(look.verdict));
   const away = distance < 0.5 ? "" : ` (the nearest that the page holds, ${rounded(distance, 2)} atlas texels from the click)`;
   const thinned = page.samples.every > 1 ? `To keep this page small it holds one of ${page.samples.every} lumitexels. ` : "";
-  const indirect = page.indirect_bounces === 0 ? "" : "Measured as photographed: the last fit saw the samples without the light that comes from the object's other surfaces. ";
+  const indirect = page.indirect_bounces === 0 ? "" : "Measured and predicted hold the light that comes by way of the object's other surfaces, as the model sends it; the fit saw samples without it. ";
   const weights = page.samples.weighed
     ? "Scales: residual over the error model's. Weight: share in the least squares for the texel's weights. "
     : "This fit estimated its errors from the samples and did not keep them, so weights are not known here. ";
