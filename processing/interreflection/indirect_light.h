@@ -18,7 +18,7 @@ struct IndirectOptions {
 // As LumitexelTile::reflectance and variance, one entry a tile: what to subtract from each sample (radiance by way of other
 // surfaces over the lamp's irradiance, 1/sr), and its variance. Of each sample two replicates are followed that are independent of each other
 // (sample_sequence.h) and each well stratified in itself: a quarter of their difference squared is the variance of their mean, rough for a
-// sample (one degree of freedom) and right on average. The scatter of single paths is not: in an open bowl it is three times too large.
+// sample (one degree of freedom) and right on average. The scatter of single paths is not: in an open bowl it is more than twice as large.
 struct IndirectLight {
   std::vector<std::vector<float>> reflectance, variance;
   std::size_t samples = 0;          // that were followed
