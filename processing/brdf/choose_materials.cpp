@@ -31,6 +31,8 @@ std::vector<Choice> last_taken_and_nearest_refused(const std::vector<Choice>& ch
   return kept;
 }
 
+int steps_left(std::size_t asked, std::size_t of) { return static_cast<int>((of - asked) * kChoosingSteps / of); }
+
 using ErrorsByCandidate = std::vector<std::vector<SquaredError>>;
 
 // The places of `some` in `all`, both ascending.
@@ -59,12 +61,13 @@ Mixture relearnt(Mixture mixture, const Observations& shown, const LumitexelList
 }
 
 ErrorsByCandidate errors_by_photograph(const std::vector<Mixture>& candidates, const Observations& observations, const LumitexelList& learners,
-                                       const LumitexelList& asked, const MaterialFitOptions& fit, double clip) {
+                                       const LumitexelList& asked, const MaterialFitOptions& fit, double clip, const std::function<void(int)>& report) {
   LumitexelList all;
   std::set_union(learners.begin(), learners.end(), asked.begin(), asked.end(), std::back_inserter(all));
   const LumitexelList all_learners = places_of(learners, all), all_asked = places_of(asked, all);
   const std::size_t photographs = 1 + *std::max_element(observations.view.begin(), observations.view.end());
   ErrorsByCandidate errors(candidates.size(), std::vector<SquaredError>(photographs));
+  const std::size_t asks = kFolds * candidates.size();
   for (std::size_t f = 0; f < kFolds; ++f) {
     const PhotographFold fold = photograph_fold(observations, all, f, kFolds);
     const LumitexelList own = with_samples_in(fold.shown, all_learners);
@@ -72,6 +75,7 @@ ErrorsByCandidate errors_by_photograph(const std::vector<Mixture>& candidates, c
       const Mixture mixture = relearnt(candidates[c], fold.shown, own, fit);
       const auto of_fold = projected_errors_by_photograph(mixture, fold, own, all_asked, photographs, clip);
       for (std::size_t v = 0; v < photographs; ++v) errors[c][v] += of_fold[v];
+      report(steps_left(f * candidates.size() + c + 1, asks));
     }
   }
   return errors;
@@ -88,11 +92,12 @@ std::vector<std::size_t> spaced_sizes(const std::vector<Mixture>& candidates) {
 }
 
 ChosenMaterials choose_by_photographs(const std::vector<Mixture>& candidates, const Observations& observations, const LumitexelList& learners,
-                                      const LumitexelList& asked, const MaterialFitOptions& fit, double clip) {
+                                      const LumitexelList& asked, const MaterialFitOptions& fit, double clip,
+                                      const std::function<void(int)>& report) {
   const std::vector<std::size_t> sizes = spaced_sizes(candidates);
   std::vector<Mixture> spaced;
   for (const std::size_t i : sizes) spaced.push_back(candidates[i]);
-  const ErrorsByCandidate errors = errors_by_photograph(spaced, observations, thinned(learners, kMostRelearnt), asked, fit, clip);
+  const ErrorsByCandidate errors = errors_by_photograph(spaced, observations, thinned(learners, kMostRelearnt), asked, fit, clip, report);
   std::vector<Predictor> predictors;
   for (std::size_t i = 0; i < spaced.size(); ++i) predictors.push_back({std::to_string(spaced[i].materials.size()), &errors[i]});
   std::vector<Choice> choices;
@@ -103,13 +108,19 @@ ChosenMaterials choose_by_photographs(const std::vector<Mixture>& candidates, co
 }  // namespace
 
 ChosenMaterials choose_materials(const std::vector<Mixture>& candidates, Presumed presumed, const Observations& observations,
-                                 const LumitexelList& learners, const LumitexelList& judges, const MaterialFitOptions& fit) {
+                                 const LumitexelList& learners, const LumitexelList& judges, const MaterialFitOptions& fit,
+                                 const std::function<void(int)>& report) {
   if (candidates.size() < 2) return {};
   const LumitexelList asked = thinned(judges, kMostAsked);
   const double clip = clip_level(observations, asked);
-  if (photographs_of(observations, learners) >= kFewestPhotographs) return choose_by_photographs(candidates, observations, learners, asked, fit, clip);
+  if (photographs_of(observations, learners) >= kFewestPhotographs) {
+    return choose_by_photographs(candidates, observations, learners, asked, fit, clip, report);
+  }
   ErrorsByCandidate errors;
-  for (const Mixture& mixture : candidates) errors.push_back(projected_errors(mixture, observations, learners, asked, clip));
+  for (const Mixture& mixture : candidates) {
+    errors.push_back(projected_errors(mixture, observations, learners, asked, clip));
+    report(steps_left(errors.size(), candidates.size()));
+  }
   std::vector<Predictor> predictors;
   for (std::size_t i = 0; i < candidates.size(); ++i) predictors.push_back({std::to_string(candidates[i].materials.size()), &errors[i]});
   if (presumed == Presumed::Few) std::reverse(predictors.begin(), predictors.end());

@@ -8,6 +8,7 @@
 // as all photographs have it, and the BRDFs anew. Else samples are left out, and the scatter is that over lumitexels.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "processing/brdf/choice.h"
@@ -31,8 +32,12 @@ struct ChosenMaterials {
 
 inline constexpr std::size_t kFewestPhotographs = 10;
 
+inline constexpr int kChoosingSteps = 40;  // that are reported: about as long as so many splits and merges
+
 // candidates: of the same learners, from many materials to few, as `fit` says. judges: lumitexels that have not learnt, where there are enough.
+// report: called with the steps left, down to 0.
 ChosenMaterials choose_materials(const std::vector<Mixture>& candidates, Presumed presumed, const Observations& observations,
-                                 const LumitexelList& learners, const LumitexelList& judges, const MaterialFitOptions& fit);
+                                 const LumitexelList& learners, const LumitexelList& judges, const MaterialFitOptions& fit,
+                                 const std::function<void(int)>& report);
 
 }  // namespace lumitexel

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "processing/brdf/choose_materials.h"
 #include "processing/brdf/error_choice.h"
 #include "processing/brdf/merge_materials.h"
 #include "processing/brdf/select_lumitexels.h"
@@ -34,8 +35,10 @@ int most_materials(const ClusterOptions& options) {
   return wanted == 1 ? 1 : std::min(2 * wanted, wanted + kMostExtra);
 }
 
-// Of one search: splits up to the most materials, and merges down from them.
-int steps_from_nothing(const ClusterOptions& options) { return 2 * most_materials(options) + kStepsBesideMaterials; }
+// Of one search: splits up to the most materials, merges down from them, and chooses among their numbers.
+int steps_from_nothing(const ClusterOptions& options) {
+  return 2 * most_materials(options) + (options.materials == 0 ? kChoosingSteps : 0) + kStepsBesideMaterials;
+}
 
 // While materials are told apart they all have a lobe: what a matte whole hides, a part may show.
 MaterialSearch search_with(ErrorSource errors, const Observations& observations, const LumitexelList& selection,
@@ -54,7 +57,7 @@ MaterialSearch search_with(ErrorSource errors, const Observations& observations,
   report(1 + most);
   maximise_expectation(search.mixture, observations, selection, search.fit, {kSearchRounds, kSearchSettled});
   search.choices = merge_materials(search.mixture, observations, selection, {options.materials, search.fit, judges(observations, selection)},
-                                   [&](int left) { report(1 + 2 * most - left); });
+                                   [&](int left) { report(steps_from_nothing(options) - 1 - left); });
   report(steps_from_nothing(options));
   return search;
 }

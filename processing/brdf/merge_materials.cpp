@@ -203,17 +203,19 @@ void merge_until(int materials, bool stop_where_needed, Mixture& mixture, const 
 std::vector<Choice> merge_materials(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
                                     const MergeOptions& options, const std::function<void(int)>& report) {
   const bool automatic = options.materials == 0;
+  const auto after_merge = [&](const Mixture& merged) { report(size_of(merged) + (automatic ? kChoosingSteps : 0)); };
   if (!automatic || options.fit.estimate_error) {
-    merge_until(options.materials, automatic, mixture, observations, lumitexels, options.fit, [&](const Mixture& merged) { report(size_of(merged)); });
+    merge_until(options.materials, automatic, mixture, observations, lumitexels, options.fit, after_merge);
   }
   if (!automatic) return {};
   std::vector<Mixture> candidates{mixture};
   merge_until(1, false, mixture, observations, lumitexels, options.fit, [&](const Mixture& merged) {
     candidates.push_back(merged);
-    report(size_of(merged));
+    after_merge(merged);
   });
   const Presumed presumed = options.fit.estimate_error ? Presumed::Many : Presumed::Few;
-  const ChosenMaterials chosen = choose_materials(candidates, presumed, observations, lumitexels, options.judges.empty() ? lumitexels : options.judges, options.fit);
+  const ChosenMaterials chosen = choose_materials(candidates, presumed, observations, lumitexels, options.judges.empty() ? lumitexels : options.judges, options.fit,
+                                                  [&](int left) { report(1 + left); });
   mixture = candidates[chosen.candidate];
   return chosen.choices;
 }

@@ -26,7 +26,7 @@ struct MergeOptions {
 };
 
 // `mixture` should have settled. Greedy: always the pair whose merging loses least likelihood, then the mixture settles again. Returns what was
-// said of the number. report: called with the number of materials after each merge.
+// said of the number. report: called with the steps left, down to 1: each merge is one, and choosing the number kChoosingSteps.
 std::vector<Choice> merge_materials(Mixture& mixture, const Observations& observations, const LumitexelList& lumitexels,
                                     const MergeOptions& options, const std::function<void(int)>& report);
 

@@ -125,6 +125,22 @@ TEST(ClusterMaterials, MaterialsKnownBeforeGiveWayToBetterOnes) {
   EXPECT_EQ(cluster_materials(scene.observations, select_lumitexels(scene.observations, 500), options, [](int) {}).materials.size(), 1u);
 }
 
+TEST(ClusterMaterials, ProgressGoesOneWayAndIsMadeInSmallSteps) {
+  constexpr int kLongest = 16;  // splitting tries as many materials as the scene might have, and stops where nothing is gained
+  const ThreeMaterials scene(4);
+  for (const int materials : {3, 0}) {
+    const ClusterOptions options = options_for(materials);
+    std::vector<int> steps;
+    cluster_materials(scene.observations, select_lumitexels(scene.observations, 500), options, [&](int done) { steps.push_back(done); });
+    EXPECT_EQ(steps.front(), 0);
+    EXPECT_EQ(steps.back(), clustering_steps(options));
+    for (std::size_t i = 1; i < steps.size(); ++i) {
+      EXPECT_GE(steps[i], steps[i - 1]) << materials << " asked for, report " << i;
+      EXPECT_LE(steps[i] - steps[i - 1], kLongest) << materials << " asked for, report " << i;
+    }
+  }
+}
+
 TEST(ClusterMaterials, ResultsDoNotDependOnTheNumberOfThreads) {
   const ThreeMaterials scene(5);
   const Clustering many = cluster(scene.observations, 3);

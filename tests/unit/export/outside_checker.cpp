@@ -13,9 +13,12 @@ std::filesystem::path modules_of(const std::string& name) { return kRoot / "buil
 
 }  // namespace
 
-// npm writes the file last, so what it could not finish does not count.
+// npm writes the hidden file last, so what it could not finish does not count; nor does another version than the pinned one.
 bool has_checker(const std::string& name) {
-  return std::system("command -v node >/dev/null") == 0 && std::filesystem::exists(modules_of(name) / ".package-lock.json");
+  const std::filesystem::path installed = kRoot / "build" / name / "package-lock.json";
+  const std::filesystem::path pinned = kRoot / "config/setup" / name / "package-lock.json";
+  return std::system("command -v node >/dev/null") == 0 && std::filesystem::exists(modules_of(name) / ".package-lock.json") &&
+         std::filesystem::exists(installed) && read_whole_file(installed) == read_whole_file(pinned);
 }
 
 CheckerAnswer checked_by(const std::string& name, const std::filesystem::path& folder) {

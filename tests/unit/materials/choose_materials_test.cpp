@@ -40,7 +40,7 @@ LumitexelList all_of(const Observations& observations) {
 }
 
 ChosenMaterials choose(const std::vector<Mixture>& candidates, const Observations& observations, Presumed presumed = Presumed::Few) {
-  return choose_materials(candidates, presumed, observations, all_of(observations), all_of(observations), {});
+  return choose_materials(candidates, presumed, observations, all_of(observations), all_of(observations), {}, [](int) {});
 }
 
 const Brdf kRed = one_lobe({0.20, 0.05, 0.04}, {0.3, 0.3, 0.3}, kMirror, 20.0);
