@@ -144,12 +144,18 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
     if (changed) look();
     changed = changed && !put_back;
   }
-  if (auto normals = seek_normals(session, inputs, reflectance.clustering, model, summary, timer, progress)) {
-    turn(normals->normal, gathered.set);
-    look();
-    keep_before_normals(model, summary);
-    set_normal_sigma(gathered.set, *normals, model);
-    fit_again(true, " on fitted normals");
+  if (want_normals(session, inputs, reflectance.clustering, summary, timer, progress)) {
+    const std::vector<Eigen::Vector3d> of_mesh = normals_of(gathered.set);
+    for (int round = 1; round <= options.normal_rounds; ++round) {
+      const std::string again = round == 1 ? "" : ", round " + std::to_string(round);
+      turn(of_mesh, gathered.set);
+      const SoughtNormals normals = find_normals(session, inputs, reflectance.clustering, model, round == options.normal_rounds, again, summary, timer, progress);
+      if (round == 1) keep_before_normals(model, summary);
+      turn(normals.normal, gathered.set);
+      look();
+      set_normal_sigma(gathered.set, normals, model);
+      fit_again(round == 1, " on fitted normals" + again);
+    }
   } else if (changed) {
     fit_again(true, " without light between surfaces");
   }

@@ -43,6 +43,7 @@ struct FitOptions {
   int most_lobes = 2;                       // each must be asked for by the samples; with the paper's method it is the number
   bool principal_functions = false;         // tried for each material, and kept where left-out lumitexels are predicted better
   NormalChoice normals = NormalChoice::Auto;
+  int normal_rounds = 1;                    // normals from materials, then materials from normals
   NormalFitOptions normal_fit;
   InterreflectionOptions interreflections;
   ErrorSource errors = ErrorSource::Auto;

@@ -1,7 +1,7 @@
 // Normals finer than the mesh's (section 9 of the paper), where photographs that the fit leaves out are then predicted better.
 #pragma once
 
-#include <optional>
+#include <string>
 
 #include "processing/fit/reflectance_stage.h"
 
@@ -13,10 +13,14 @@ struct SoughtNormals {
   NormalPrior prior;                    // that they were sought under
 };
 
-// By the model's materials and bases. Nothing where options say so or where left-out photographs do not ask for it; what they said goes into
-// the summary.
-std::optional<SoughtNormals> seek_normals(const CalibratedSession& session, const FitInputs& inputs, const Clustering& materials,
-                                          const Model& model, FitSummary& summary, StageTimer& timer, Progress& progress);
+// Whether they are sought, as options say or left-out photographs do; what these said goes into the summary.
+bool want_normals(const CalibratedSession& session, const FitInputs& inputs, const Clustering& materials, FitSummary& summary, StageTimer& timer,
+                  Progress& progress);
+
+// By the model's materials and bases, from the mesh's normals, which inputs.lumitexels must have. sigmas: whether they are wanted; they take
+// longer than the normals, and their scale goes into the summary. Without, sigma_rad is the prior's own. `pass` goes into the stage's name.
+SoughtNormals find_normals(const CalibratedSession& session, const FitInputs& inputs, const Clustering& materials, const Model& model, bool sigmas,
+                           const std::string& pass, FitSummary& summary, StageTimer& timer, Progress& progress);
 
 // What stands in the model so far becomes its stages before normals.
 void keep_before_normals(Model& model, FitSummary& summary);

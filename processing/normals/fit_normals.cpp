@@ -10,6 +10,12 @@ std::vector<NormalMaterial> normal_materials(const std::vector<std::vector<Brdf>
   return materials;
 }
 
+std::vector<Eigen::Vector3d> normals_of(const LumitexelSet& lumitexels) {
+  std::vector<Eigen::Vector3d> normals;
+  for (const LumitexelTile& tile : lumitexels.tiles) normals.insert(normals.end(), tile.normal.begin(), tile.normal.end());
+  return normals;
+}
+
 void turn(const std::vector<Eigen::Vector3d>& normals, LumitexelSet& lumitexels) {
   std::size_t i = 0;
   for (LumitexelTile& tile : lumitexels.tiles) {
@@ -22,7 +28,7 @@ FittedNormals fit_normals(const DirectedLumitexels& lumitexels, const Neighbours
                           Uncertainty wanted, const std::function<void(int)>& after_step) {
   const std::vector<NormalMaterial> materials = normal_materials(bases, lumitexels.channels(), median_reflectance, options);
   const NormalProblem problem{lumitexels, neighbours, materials, label};
-  const NormalField field = smooth_normals(problem, field_on_mesh(problem), {options.prior, options.steps}, after_step);
+  const NormalField field = smooth_normals(problem, field_on_mesh(problem), {options.prior, options.most_steps}, after_step);
   FittedNormals fitted{field.normal, {}, {}};
   if (wanted == Uncertainty::None) return fitted;
   fitted.sigma = normal_sigmas(problem, field, options.prior, wanted == Uncertainty::Draws ? &fitted.prior_draws : nullptr);

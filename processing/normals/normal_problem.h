@@ -19,6 +19,11 @@ struct NormalProblem {
   const NormalMaterial& material_of(std::size_t lumitexel) const { return materials[static_cast<std::size_t>(label[lumitexel])]; }
 };
 
+struct NormalField {
+  std::vector<Eigen::Vector3d> normal;  // in world, unit
+  std::vector<TexelWeights> weights;
+};
+
 // How a deviation of each of a loop's four normals changes the height gained on a way around it: along the sum of the two sides that meet there.
 using LoopSides = std::array<Eigen::Vector3d, 4>;
 

@@ -81,6 +81,13 @@ void add_sample(const NormalMaterial& material, const std::vector<float>& weight
   right.noalias() += slopes.transpose() * rows.col(kMostUnknowns);
 }
 
+// Of the weights, up to a constant.
+double prior_cost(const NormalMaterial& material, const std::vector<float>& weight) {
+  if (material.prior.size() == 0) return 0.0;
+  const BasisVector w = Eigen::Map<const Eigen::VectorXf>(weight.data(), static_cast<Eigen::Index>(weight.size())).cast<double>();
+  return w.dot(material.prior * w) - 2.0 * w.dot(material.prior_right);
+}
+
 }  // namespace
 
 TangentFrame tangent_frame(const Eigen::Vector3d& n) {
@@ -107,14 +114,17 @@ ChannelValues predicted_reflectance(const NormalMaterial& material, const std::v
   return mixed(basis_values(material, used(weight), normal, sample, channels), weight);
 }
 
-double normal_misfit(const NormalMaterial& material, const std::vector<float>& weight, const Eigen::Vector3d& normal,
-                     std::span<const DirectedSample> samples, int channels) {
+double normal_cost(const NormalMaterial& material, const TexelState& texel, const TexelState& scaled_by, std::span<const DirectedSample> samples,
+                   int channels) {
   DevianceSum sum(material.error, channels);
   for (const DirectedSample& sample : samples) {
-    const ChannelValues predicted = predicted_reflectance(material, weight, normal, sample, channels);
-    sum.add(sample_misfit(material.error, sample.observation, channels, predicted));
+    const ChannelValues predicted = predicted_reflectance(material, texel.weight, texel.normal, sample, channels);
+    const ChannelValues scaling = predicted_reflectance(material, scaled_by.weight, scaled_by.normal, sample, channels);
+    ScaledResiduals residuals = scaled_residuals(material.error, sample.observation, channels, scaling);
+    for (std::size_t c = 0; c < static_cast<std::size_t>(channels); ++c) residuals.over_scale[c] += (scaling[c] - predicted[c]) / residuals.scale[c];
+    sum.add(sample_misfit(material.error, residuals, channels));
   }
-  return sum.total();
+  return sum.total() + prior_cost(material, texel.weight);
 }
 
 NormalEquations normal_equations(const NormalMaterial& material, const std::vector<float>& weight, const Eigen::Vector3d& normal,

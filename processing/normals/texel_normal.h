@@ -39,9 +39,16 @@ struct NormalMaterial {
 ChannelValues predicted_reflectance(const NormalMaterial& material, const std::vector<float>& weight, const Eigen::Vector3d& normal,
                                     const DirectedSample& sample, int channels);
 
-// Minus twice the log likelihood of the samples, up to a constant.
-double normal_misfit(const NormalMaterial& material, const std::vector<float>& weight, const Eigen::Vector3d& normal,
-                     std::span<const DirectedSample> samples, int channels);
+// What a texel is taken to be.
+struct TexelState {
+  const Eigen::Vector3d& normal;
+  const std::vector<float>& weight;
+};
+
+// Minus twice the log likelihood of the samples and of the weights' prior, up to a constant; each sample's scale as `scaled_by` predicts it.
+// normal_equations at `scaled_by` has the slopes of it.
+double normal_cost(const NormalMaterial& material, const TexelState& texel, const TexelState& scaled_by, std::span<const DirectedSample> samples,
+                   int channels);
 
 // Quadratic form of the misfit over the tangent step d, weights following: d^T matrix d / 2 - right^T d.
 struct NormalEquations {

@@ -18,6 +18,7 @@ namespace {
 
 struct FitSettings {
   std::string session, out, quality = "standard", method = "lumitexel", errors = "auto", bases = "auto", precision = "double";
+  int normal_rounds = 1;
   std::string materials, family, lobe_shapes, normals, interreflections;  // empty: as quality and method have it
   std::optional<int> lobes;
   std::optional<std::size_t> learning_points, final_points;
@@ -80,6 +81,7 @@ FitOptions fit_options(const FitSettings& settings) {
   if (settings.lobes) options.most_lobes = *settings.lobes;
   if (!settings.lobe_shapes.empty()) options.lobe_shapes = named_value("--lobe-shapes", settings.lobe_shapes, shape_words());
   if (!settings.normals.empty()) options.normals = named_value("--normals", settings.normals, normal_words());
+  options.normal_rounds = settings.normal_rounds;
   if (!settings.interreflections.empty()) {
     options.interreflections.choice = named_value("--interreflections", settings.interreflections, interreflection_words());
   }
@@ -350,6 +352,10 @@ void add_fit_command(CLI::App& app, CommandAction& action) {
                      "fitted: normals finer than the mesh's, from all photographs, and then everything once more on them; texel: the same, each texel by "
                      "its own samples alone, as in the paper; mesh: the mesh's own; auto: fitted where photographs left out for it are then predicted better (default: auto, with "
                      "--quality draft and --method paper mesh)");
+  command.add_option("--normal-rounds", settings->normal_rounds,
+                     "How often normals are fitted and then everything once more on them")
+      .range(1, 9)
+      .capture_default_str();
   command.add_option("--interreflections", settings->interreflections,
                      "auto: light between the object's own surfaces is predicted where it can matter, and taken out of the samples if they show it; always: "
                      "whether they show it or not; off (default: auto, with --quality draft and --method paper off)");

@@ -145,12 +145,15 @@ int main(int argc, char** argv) {
   app.add_option("--truth", truth, "The true surface, PLY or OBJ, in the frame of the session's mesh")->required();
   bool alone = false;
   app.add_flag("--texel", alone, "Each texel's normal by its own samples alone, as the paper has it");
+  int steps = lumitexel::NormalFitOptions().most_steps;
+  app.add_option("--steps", steps, "Most steps of the search for normals")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   using namespace lumitexel;
   NoProgress quiet;
   const CalibratedSession session = calibrate_session(SessionStore::open(settings.session, OpenMode::ReadOnly), quiet);
   FitOptions options = settings.options();
   options.normals = alone ? NormalChoice::Texel : NormalChoice::Fitted;
+  options.normal_fit.most_steps = steps;
   const FittedModel fitted = fit_model(session, options, StageTimer(), quiet);
   std::printf("%s\n%s, %s quality, %d materials, %d lobes; degrees off the true normal, median and mean\n", machine_line().c_str(),
               settings.session.c_str(), settings.quality.c_str(), options.materials, options.most_lobes);

@@ -35,7 +35,7 @@ NormalPatch patch_with_black_flat_views() {
 NormalFitOptions unheld() {
   NormalFitOptions options;
   options.prior = NormalPrior::alone();
-  options.steps = 12;
+  options.most_steps = 12;
   return options;
 }
 
