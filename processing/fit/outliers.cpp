@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 #include "processing/brdf/lobe_geometry.h"
 #include "processing/brdf/ordered_sum.h"
@@ -95,6 +96,8 @@ const char* to_string(OutlierReason reason) {
   return "unknown";
 }
 
+std::size_t total_of(const CountByReason& count) { return std::accumulate(count.begin(), count.end(), std::size_t{0}); }
+
 Outliers find_outliers(const Model& model, const Observations& observations, const std::vector<ErrorModel>& errors,
                        const std::vector<int>& label, const std::vector<TexelWeights>& weights, std::size_t views) {
   std::vector<std::vector<Outlier>> found(observations.lumitexels());
@@ -122,7 +125,8 @@ Outliers find_outliers(const Model& model, const Observations& observations, con
 
 std::string outliers_csv(const Outliers& outliers, const std::vector<std::string>& view_names,
                          const std::vector<std::uint32_t>& texel, int atlas_width) {
-  std::string text = "view,texel_x,texel_y,reason,scales,measured,predicted\n";
+  std::string text = "# the worst " + std::to_string(outliers.worst.size()) + " of " + std::to_string(total_of(outliers.count)) + " outliers among " +
+                     std::to_string(outliers.samples) + " samples\nview,texel_x,texel_y,reason,scales,measured,predicted\n";
   const auto width = static_cast<std::uint32_t>(atlas_width);
   for (const Outlier& outlier : outliers.worst) {
     const std::uint32_t at = texel.at(outlier.lumitexel);

@@ -42,18 +42,19 @@ inline constexpr std::size_t kMostOutliersListed = 10000;
 
 struct Outliers {
   std::size_t samples = 0;                 // looked at
-  CountByReason count{};
+  CountByReason count{};                   // of all, listed or not
   std::vector<CountByReason> by_view, by_material;
   std::vector<Outlier> worst;              // at most kMostOutliersListed, the worst first
 };
+std::size_t total_of(const CountByReason& count);
 
 // observations.view must be filled. errors: one a material. label: material of each lumitexel. weights: of the model's basis, one entry
 // a lumitexel.
 Outliers find_outliers(const Model& model, const Observations& observations, const std::vector<ErrorModel>& errors,
                        const std::vector<int>& label, const std::vector<TexelWeights>& weights, std::size_t views);
 
-// "view,texel_x,texel_y,reason,scales,measured,predicted" and a row for each of the worst; names in double quotes (RFC 4180). texel: atlas
-// index of each lumitexel.
+// "# the worst 10000 of 23456 outliers among 300000 samples", then "view,texel_x,texel_y,reason,scales,measured,predicted" and a row for each of
+// the worst; names in double quotes (RFC 4180). texel: atlas index of each lumitexel.
 std::string outliers_csv(const Outliers& outliers, const std::vector<std::string>& view_names,
                          const std::vector<std::uint32_t>& texel, int atlas_width);
 

@@ -80,6 +80,7 @@ json outliers_json(const Outliers& outliers, const CalibratedSession& session) {
   return {{"beyond_scales", kOutlierScales},
           {"samples", outliers.samples},
           {"count", counts_json(outliers.count)},
+          {"listed", outliers.worst.size()},
           {"by_view", by_view},
           {"by_material", by_material}};
 }

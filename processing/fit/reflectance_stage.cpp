@@ -7,6 +7,7 @@
 
 #include "drivers/error.h"
 #include "processing/brdf/choose_bases.h"
+#include "processing/brdf/choose_functions.h"
 #include "processing/brdf/material_basis.h"
 #include "processing/brdf/paper_clustering.h"
 #include "processing/brdf/principal_functions.h"
@@ -114,20 +115,13 @@ void move_bases(const Observations& observations, const Clustering& clustering, 
     principal.draw = options.draw;
     principal.prior = summary.prior[j].prior;
     principal.fit = clustering.fit;
-    const auto moved = [&](const LumitexelList& learnt) {
-      return principal_functions(observations, learnt, basis, material.error, principal).basis;
-    };
     bool better = options.method == FitMethod::Paper;
     if (!better) {
-      LumitexelList learnt, left_out;
-      for (std::size_t k = 0; k < members[j].size(); ++k) (k % 2 == 0 ? learnt : left_out).push_back(members[j][k]);
-      const PriorChoice before = prior_for(observations, left_out, basis, material, options);
-      const PriorChoice after = prior_for(observations, left_out, moved(learnt), material, options);
-      const Gain gain = gain_of(after.by_texel, before.by_texel);
-      better = worth_having(gain);
-      summary.choices.back().choices.push_back({with_material("functions", j), "moved", "as found", gain, better});
+      const FunctionsChoice choice = choose_functions(observations, members[j], basis, material, principal, options.precision);
+      better = choice.moved;
+      summary.choices.back().choices.push_back({with_material("functions", j), "moved", "as found", choice.gain, better});
     }
-    if (better) basis = moved(members[j]);
+    if (better) basis = principal_functions(observations, members[j], basis, material.error, principal).basis;
     progress.update(static_cast<std::int64_t>(j + 1));
   }
 }

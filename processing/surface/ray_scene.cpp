@@ -40,7 +40,7 @@ struct RayScene::Embree {
   }
 };
 
-RayScene::RayScene(const Mesh& mesh) : embree_(std::make_unique<Embree>()) {
+RayScene::RayScene(const Mesh& mesh, const std::string& instruction_set) : embree_(std::make_unique<Embree>()) {
   Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Vector3d high = -low;
   for (const Eigen::Vector3d& position : mesh.positions) {
@@ -50,7 +50,7 @@ RayScene::RayScene(const Mesh& mesh) : embree_(std::make_unique<Embree>()) {
   embree_->centre = 0.5 * (low + high);
   embree_->diagonal_m = (high - low).norm();
 
-  embree_->device = rtcNewDevice(nullptr);
+  embree_->device = rtcNewDevice(instruction_set.empty() ? nullptr : ("isa=" + instruction_set).c_str());
   if (embree_->device == nullptr) throw Error("Embree: no device could be created");
   embree_->scene = rtcNewScene(embree_->device);
   rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);  // no light through the seam of two triangles

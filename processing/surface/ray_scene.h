@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "processing/surface/mesh.h"
 
@@ -18,7 +19,9 @@ struct RayHit {
 
 class RayScene {
  public:
-  explicit RayScene(const Mesh& mesh);
+  // instruction_set: of the processor, as Embree calls them ("avx2", "avx512"); empty: the widest that it has. Results are the same to the bits of
+  // what is hit and occluded, and to the rounding of a float in u, v and distance.
+  explicit RayScene(const Mesh& mesh, const std::string& instruction_set = "");
   ~RayScene();
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;

@@ -150,14 +150,12 @@ std::string rms_table(const FitSummary& summary) {
 }
 
 std::string outlier_line(const Outliers& outliers) {
-  std::size_t all = 0;
   std::string reasons;
   for (const OutlierReason reason : kOutlierReasons) {
-    const std::size_t count = outliers.count[static_cast<std::size_t>(reason)];
-    all += count;
-    reasons += line("%s %zu %s", reasons.empty() ? ":" : ",", count, to_string(reason));
+    reasons += line("%s %zu %s", reasons.empty() ? ":" : ",", outliers.count[static_cast<std::size_t>(reason)], to_string(reason));
   }
-  return line("%zu samples are not explained", all) + reasons + " (the worst: outliers.csv)\n";
+  return line("%zu samples are not explained", total_of(outliers.count)) + reasons +
+         line(" (the worst %zu: outliers.csv)\n", outliers.worst.size());
 }
 
 const char* meaning(ErrorSource errors) {

@@ -15,6 +15,7 @@ struct SelfTestOptions {
 nlohmann::json to_json(const NumericCase& row) {
   nlohmann::json json = {{"case", row.name}, {"asked", row.asked}, {"limit", row.limit}, {"ok", row.ok()}};
   json["largest"] = std::isfinite(row.largest) ? nlohmann::json(row.largest) : nlohmann::json(nullptr);
+  if (row.excluded > 0) json["excluded"] = {{"trials", row.excluded}, {"because", row.because}};
   return json;
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/unit/plain_models.h"
 
 namespace lumitexel {
@@ -71,8 +73,21 @@ TEST(Outliers, TheTableNamesPhotographAndTexel) {
   World world;
   world.see(kAside, {3.0, 3.0, 3.0});
   const std::string table = outliers_csv(world.outliers(), {"a, \"b\""}, {21}, 8);
-  const std::string expected = "view,texel_x,texel_y,reason,scales,measured,predicted\n\"a, \"\"b\"\"\",5,2,extra light,";
+  const std::string expected = "# the worst 1 of 1 outliers among 1 samples\nview,texel_x,texel_y,reason,scales,measured,predicted\n\"a, \"\"b\"\"\",5,2,extra light,";
   EXPECT_EQ(table.substr(0, expected.size()), expected);
+}
+
+// More of them than are listed: those left off are counted, and are the least of all.
+TEST(Outliers, TheTableSaysHowManyItLeavesOff) {
+  constexpr std::size_t kMore = 5;
+  World world;
+  for (std::size_t i = 0; i < kMostOutliersListed + kMore; ++i) world.see(kAside, i < kMore ? ChannelValues{2.0, 2.0, 2.0} : ChannelValues{3.0, 3.0, 3.0});
+  const Outliers outliers = world.outliers();
+  EXPECT_EQ(total_of(outliers.count), kMostOutliersListed + kMore);
+  EXPECT_DOUBLE_EQ(outliers.worst.back().scales, outliers.worst.front().scales);
+  const std::string table = outliers_csv(outliers, std::vector<std::string>(kMostOutliersListed + kMore, "a"), {21}, 8);
+  EXPECT_EQ(table.substr(0, table.find('\n')), "# the worst 10000 of 10005 outliers among 10005 samples");
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), static_cast<std::ptrdiff_t>(kMostOutliersListed) + 2);
 }
 
 }  // namespace

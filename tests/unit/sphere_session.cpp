@@ -7,7 +7,7 @@
 namespace lumitexel {
 namespace {
 
-RadianceImage photograph_of(const View& view, const Mesh& mesh, const RayScene& scene) {
+RadianceImage photograph_of(const View& view, const Mesh& mesh, const SurfaceBrdf& brdf, const RayScene& scene) {
   const ViewGeometry geometry = trace_view(view, mesh, scene);
   RadianceImage photograph{Image(geometry.width, geometry.height, 3), Image(geometry.width, geometry.height, 3, 1e-6f),
                            std::vector<std::uint8_t>(geometry.triangle.size(), 0)};
@@ -16,10 +16,11 @@ RadianceImage photograph_of(const View& view, const Mesh& mesh, const RayScene& 
     const SurfacePoint point = surface_point(mesh, geometry.triangle[i], static_cast<double>(geometry.u[i]),
                                              static_cast<double>(geometry.v[i]));
     if (!is_lit(view.light, point, scene)) continue;
-    const double cos_i = point.normal.dot(view.light.direction_from(point.position));
-    for (int c = 0; c < 3; ++c) {
-      photograph.radiance.data[3 * i + static_cast<std::size_t>(c)] =
-          static_cast<float>(kSphereAlbedo / M_PI * cos_i * view.light.irradiance(point.position, c));
+    const LobeGeometry directions =
+        lobe_geometry(point.normal, view.light.direction_from(point.position), (view.camera_in_world() - point.position).normalized());
+    const ChannelValues f = brdf(point.position, directions);
+    for (std::size_t c = 0; c < 3; ++c) {
+      photograph.radiance.data[3 * i + c] = static_cast<float>(f[c] * directions.cos_i * view.light.irradiance(point.position, static_cast<int>(c)));
     }
   }
   return photograph;
@@ -72,18 +73,23 @@ View view_of_origin(const std::string& name, const Eigen::Vector3d& eye, const E
   return view;
 }
 
-CalibratedSession diffuse_session(Mesh mesh, std::vector<View> views, const TemporaryFolder& folder) {
+CalibratedSession photographed_session(Mesh mesh, std::vector<View> views, const SurfaceBrdf& brdf, const TemporaryFolder& folder) {
   CalibratedSession session;
   session.channels = 3;
   session.mesh = std::move(mesh);
-  session.key = "diffuse";
+  session.key = "synthetic";
   const RayScene scene(session.mesh);
   for (View& view : views) {
     view.photograph = folder / (view.name + ".exr");
-    write_radiance_image(view.photograph, photograph_of(view, session.mesh, scene));
+    write_radiance_image(view.photograph, photograph_of(view, session.mesh, brdf, scene));
   }
   session.views = std::move(views);
   return session;
+}
+
+CalibratedSession diffuse_session(Mesh mesh, std::vector<View> views, const TemporaryFolder& folder) {
+  const double f = kSphereAlbedo / M_PI;
+  return photographed_session(std::move(mesh), std::move(views), [f](const auto&, const auto&) { return ChannelValues{f, f, f}; }, folder);
 }
 
 CalibratedSession sphere_session(std::vector<View> views, const TemporaryFolder& folder) {

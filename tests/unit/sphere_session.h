@@ -1,6 +1,9 @@
-// A calibrated session with closed-form truth: a diffuse sphere, photographed without noise.
+// Calibrated sessions with closed-form truth, photographed without noise: a diffuse sphere, or any surface whose BRDF is known.
 #pragma once
 
+#include <functional>
+
+#include "processing/brdf/brdf.h"
 #include "processing/calibration/calibrated_session.h"
 #include "tests/unit/temporary_folder.h"
 
@@ -14,8 +17,13 @@ Mesh sphere_mesh(double radius_m, int rings);
 // A view from `eye` towards the origin, 160 x 120 pixels, lit from `light` with intensity 10 in every channel.
 View view_of_origin(const std::string& name, const Eigen::Vector3d& eye, const Eigen::Vector3d& light);
 
-// Photographs of a diffuse object of any shape. Renders each view's photograph (one radiance a pixel centre, albedo / pi * I cos / d^2 with the mesh's own normals,
-// 0 in shadow and on the background) into `folder`.
+// f of the surface at a position, 1/sr.
+using SurfaceBrdf = std::function<ChannelValues(const Eigen::Vector3d& x_in_world, const LobeGeometry& geometry)>;
+
+// Photographs of an object of any shape and colour. Renders each view's photograph (one radiance a pixel centre, f * I cos / d^2 with the mesh's own
+// normals, 0 in shadow and on the background) into `folder`, without noise, which is stated as 1e-6 all the same.
+CalibratedSession photographed_session(Mesh mesh, std::vector<View> views, const SurfaceBrdf& brdf, const TemporaryFolder& folder);
+// The same of a diffuse surface of kSphereAlbedo.
 CalibratedSession diffuse_session(Mesh mesh, std::vector<View> views, const TemporaryFolder& folder);
 // The same of sphere_mesh(0.1, 60).
 CalibratedSession sphere_session(std::vector<View> views, const TemporaryFolder& folder);

@@ -155,6 +155,7 @@ TEST(ListedOutliers, AreReadBackAsTheyAreWritten) {
   ASSERT_EQ(listed.size(), 2u);
   EXPECT_EQ(listed.at({"a \"b\", c", 2305u}), OutlierReason::ExtraLight);
   EXPECT_EQ(listed.at({"d", 7u}), OutlierReason::NoHighlight);
+  EXPECT_EQ(listed_outliers(csv.substr(csv.find('\n') + 1), 100), listed) << "as it was written without the number of all outliers";
   EXPECT_THROW(listed_outliers("view\n\"a\",1,2,odd,1,1,1\n", 100), Corrupt);
   EXPECT_TRUE(listed_outliers("", 100).empty());
 }

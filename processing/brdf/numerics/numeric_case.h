@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -14,6 +15,8 @@ struct NumericCase {
   std::string asked;   // of what the error is a share, and over which range
   double largest = 0;  // error found; infinite where something was no number
   double limit = 0;
+  std::size_t excluded = 0;  // trials of the range that are not judged
+  std::string because{};     // why not; empty where there are none
 
   bool ok() const { return largest <= limit; }
 };

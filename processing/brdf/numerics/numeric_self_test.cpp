@@ -18,6 +18,14 @@ std::vector<TrappedPart> trapped_parts() {
           {"fits", [] { fit_cases(); }},                                   {"clustering", [] { extent_cases(kTrappedLumitexels); }}};
 }
 
+std::string exclusions(const NumericCases& cases) {
+  std::string text;
+  for (const NumericCase& row : cases) {
+    if (row.excluded > 0) text += "not judged, " + row.name + ", " + row.asked + ": " + std::to_string(row.excluded) + " trials, " + row.because + "\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 NumericCases run_numeric_self_test(const NumericSelfTestOptions& options, const std::function<void(int, int)>& report) {
@@ -50,7 +58,7 @@ std::string to_table(const NumericCases& cases) {
     table += line;
   }
   return table + "largest: the worst met, limit: the most that passes. Of values and slopes it is the error over max(f, peak / 1000), or over the slope\n"
-                 "itself where that is more; of all else what is asked, as a share of what is right or as a count.\n";
+                 "itself where that is more; of all else what is asked, as a share of what is right or as a count.\n" + exclusions(cases);
 }
 
 }  // namespace lumitexel

@@ -17,6 +17,7 @@ inline constexpr NumericSelfTestOptions kFullNumericSelfTest{1'000'000, 10'000'0
 
 // report(part, parts) is called as each part begins, and with (parts, parts) at the end. Call before the process starts threads (trapped_run.h).
 NumericCases run_numeric_self_test(const NumericSelfTestOptions& options, const std::function<void(int, int)>& report);
+// A line a row, a legend, and of each row that does not judge all of its range how many trials those were and why.
 std::string to_table(const NumericCases& cases);
 
 }  // namespace lumitexel

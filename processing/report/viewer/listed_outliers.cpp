@@ -45,7 +45,8 @@ std::map<std::pair<std::string, std::uint32_t>, OutlierReason> listed_outliers(c
   std::map<std::pair<std::string, std::uint32_t>, OutlierReason> listed;
   std::istringstream lines(csv);
   std::string line;
-  std::getline(lines, line);  // the names of the columns
+  std::getline(lines, line);  // how many are listed, and the names of the columns; of models written before the first was, the names alone
+  if (line.starts_with('#')) std::getline(lines, line);
   while (std::getline(lines, line)) {
     const std::vector<std::string> fields = fields_of(line);
     if (line.front() != '"' || fields.size() != 7) throw unreadable(line);

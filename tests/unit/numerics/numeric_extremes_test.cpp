@@ -44,6 +44,25 @@ TEST(NumericExtremes, ATrapIsReported) {
   EXPECT_TRUE(run_trapped({{"underflow is no trap", [&] { sink = (zero + 1e-300) * 1e-300; }}}).ok());
 }
 
+// What no arithmetic of this width can tell is not judged, and the table says of how many trials and why. A row that judged next to nothing would
+// pass without being asked.
+TEST(NumericExtremes, WhatIsNotJudgedIsNamed) {
+  constexpr double kMostExcluded = 0.5;  // of the trials: bases are drawn over 16 decades, of which 48 bits tell half
+  NumericCases cases = double_kernel_cases(kTrials);
+  const NumericCases in_float = float_kernel_cases(kTrials);
+  cases.insert(cases.end(), in_float.begin(), in_float.end());
+  const std::string table = to_table(cases);
+  int named = 0;
+  for (const NumericCase& row : cases) {
+    EXPECT_LT(static_cast<double>(row.excluded), kMostExcluded * kTrials) << row.name;
+    EXPECT_EQ(row.excluded == 0, row.because.empty()) << row.name;
+    if (row.excluded == 0) continue;
+    ++named;
+    EXPECT_NE(table.find(row.name + ", " + row.asked + ": " + std::to_string(row.excluded) + " trials, " + row.because), std::string::npos) << table;
+  }
+  EXPECT_GT(named, 0) << "the rows of small bases leave some out";
+}
+
 TEST(NumericExtremes, ANumberThatIsNoneFailsItsRow) {
   LargestError error;
   error.see(1e-9);
