@@ -8,12 +8,10 @@ namespace lumitexel {
 RenderedView predicted_view(const ViewRenderer& renderer, const View& view, FitStage stage, int paths) {
   const Model& model = renderer.model();
   RenderedView predicted = renderer.render(view, {stage, 1});
-  // Stages before normals were fitted to samples as photographed, unless there are no others.
-  const bool taken_out = model.indirect_bounces > 0 && (!has_normals(model) || stage == FitStage::Normal);
-  if (!taken_out) return predicted;
+  if (bounces_taken_out(model, stage) == 0) return predicted;
   LitOptions options;
   options.stage = stage;
-  options.path.bounces = model.indirect_bounces;
+  options.path.bounces = bounces_taken_out(model, stage);
   options.path.straight_light = false;
   options.limits.samples_per_pixel = paths;
   NoProgress silent;

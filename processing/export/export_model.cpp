@@ -6,6 +6,7 @@
 #include "processing/export/map_files.h"
 #include "processing/export/materialx_file.h"
 #include "processing/export/mitsuba_scene.h"
+#include "rig/pending_directory.h"
 
 namespace lumitexel {
 
@@ -29,14 +30,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Before the work, which takes a while.
-void make_empty_folder(const fs::path& directory) {
-  if (fs::exists(directory) && !(fs::is_directory(directory) && fs::is_empty(directory))) {
-    throw BadInput("--out", "'" + directory.string() + "' exists", "a new or empty folder");
-  }
-  std::error_code failed;
-  fs::create_directories(directory, failed);
-  if (failed) throw BadInput("--out", "'" + directory.string() + "' cannot be made (" + failed.message() + ")", "a folder that can be written to");
+void write_files(const fs::path& directory, ExportFormat format, const Model& model, const RefittedAtlas& atlas, const ExportedMaps& maps, const ConversionLoss& loss) {
+  if (format == ExportFormat::Gltf) write_gltf(directory, model.mesh, maps, loss);
+  if (format == ExportFormat::Maps) write_map_files(directory, model, atlas, loss);
+  if (format == ExportFormat::Blender) write_blender_scene(directory, model, atlas, maps, loss);
+  if (format == ExportFormat::Materialx) write_materialx(directory, model.mesh, maps, loss);
+  if (format == ExportFormat::Mitsuba) write_mitsuba_scene(directory, model, maps, loss);
 }
 
 void check_exportable(const Model& model) {
@@ -48,18 +47,28 @@ void check_exportable(const Model& model) {
 
 }  // namespace
 
+void check_export_directory(const fs::path& directory) {
+  if (directory.empty()) throw BadInput("--out", "no name", "a new or empty folder");
+  std::error_code unreadable;
+  const bool empty = fs::is_directory(directory, unreadable) && fs::is_empty(directory, unreadable);
+  if (fs::exists(directory, unreadable) && !empty) throw BadInput("--out", "'" + directory.string() + "' exists", "a new or empty folder");
+  try {
+    const PendingDirectory probe(directory);
+  } catch (const Error& error) {
+    throw BadInput("--out", error.what(), "a folder that can be written to");
+  }
+}
+
 ConversionLoss export_model(const Model& model, ExportFormat format, const fs::path& directory, Progress& progress) {
   check_exportable(model);
-  make_empty_folder(directory);
+  check_export_directory(directory);
+  PendingDirectory pending(directory);
   const MaterialForm form = format == ExportFormat::Mitsuba ? MaterialForm::Mitsuba : MaterialForm::Gltf;
   const RefittedAtlas atlas = refit_atlas(model, form, progress);
   const ExportedMaps maps = textures_of(atlas);
   const ConversionLoss loss = conversion_loss(model, maps, progress);
-  if (format == ExportFormat::Gltf) write_gltf(directory, model.mesh, maps, loss);
-  if (format == ExportFormat::Maps) write_map_files(directory, model, atlas, loss);
-  if (format == ExportFormat::Blender) write_blender_scene(directory, model, atlas, maps, loss);
-  if (format == ExportFormat::Materialx) write_materialx(directory, model.mesh, maps, loss);
-  if (format == ExportFormat::Mitsuba) write_mitsuba_scene(directory, model, maps, loss);
+  write_files(pending.path(), format, model, atlas, maps, loss);
+  pending.move_into_place();
   return loss;
 }
 

@@ -19,8 +19,11 @@ ExportFormat export_format_from_string(const std::string& name);  // "gltf", "ma
 // The file that another program opens first.
 const char* main_file(ExportFormat format);
 
-// Writes into `directory`, which is made; throws BadInput if it exists and is not empty or cannot be made, if the model's mesh has no texture coordinates or
-// if it has neither one nor three channels. Returns what the conversion loses.
+// What export_model would refuse of a folder, to be asked before the long work: throws BadInput if it exists and is not empty, or cannot be made.
+void check_export_directory(const std::filesystem::path& directory);
+
+// Writes a folder beside `directory`, which becomes it once all is there; nothing is left of one that was not finished. Throws BadInput as check_export_directory, if
+// the model's mesh has no texture coordinates or if it has neither one nor three channels; Error if it cannot be written. Returns what the conversion loses.
 ConversionLoss export_model(const Model& model, ExportFormat format, const std::filesystem::path& directory, Progress& progress);
 
 }  // namespace lumitexel

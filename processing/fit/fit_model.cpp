@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "drivers/error.h"
 #include "processing/fit/fill_atlas.h"
 #include "processing/fit/indirect_trial.h"
 #include "processing/fit/interreflection_stage.h"
@@ -11,6 +10,7 @@
 #include "processing/fit/observe.h"
 #include "processing/fit/provenance.h"
 #include "processing/fit/reflectance_stage.h"
+#include "processing/fit/unseen_mesh.h"
 #include "processing/surface/best_view.h"
 #include "processing/surface/gather_lumitexels.h"
 
@@ -58,7 +58,7 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
   const RayScene scene(session.mesh);
   const std::vector<int> best_view = choose_best_views(session, scene);
   summary.unseen_triangles = static_cast<std::size_t>(std::count(best_view.begin(), best_view.end(), kUnseen));
-  if (summary.unseen_triangles == best_view.size()) throw Error("fit: no view sees any triangle of the mesh");
+  if (summary.unseen_triangles == best_view.size()) refuse_unseen_mesh(session);
   const Atlas atlas = lay_out(session, best_view, options.layout, summary.layout);
 
   timer.begin("lumitexels");

@@ -13,7 +13,7 @@ struct FittedModel {
   FitSummary summary;
 };
 
-// timer: may already hold the stages that came before (calibration). Throws Error if the views see nothing of the mesh lit.
+// timer: may already hold the stages that came before (calibration). Throws BadInput if no photograph of the fit sees any of the mesh.
 FittedModel fit_model(const CalibratedSession& session, const FitOptions& options, StageTimer timer, Progress& progress);
 
 }  // namespace lumitexel

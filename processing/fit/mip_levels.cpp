@@ -122,6 +122,8 @@ Model averaged_level(const Model& model, int level) {
   return result;
 }
 
-std::filesystem::path level_directory(const std::filesystem::path& model, int level) { return model / "levels" / std::to_string(level); }
+std::filesystem::path levels_directory(const std::filesystem::path& model) { return model / "levels"; }
+
+std::filesystem::path level_directory(const std::filesystem::path& model, int level) { return levels_directory(model) / std::to_string(level); }
 
 }  // namespace lumitexel

@@ -37,7 +37,8 @@ LumitexelSet coarser_lumitexels(const LumitexelSet& parts, const CoarserLayout& 
 // averaged: of the same level; fine: texel_lumitexels of the model.
 Model refitted_level(const Model& model, const Model& averaged, const LumitexelSet& fine, const CalibratedSession& session, int level);
 
-// Where a model keeps a level: MODEL/levels/1 and so on, each written by write_model.
+// Where a model keeps its levels: MODEL/levels/1 and so on, each written by write_model.
+std::filesystem::path levels_directory(const std::filesystem::path& model);
 std::filesystem::path level_directory(const std::filesystem::path& model, int level);
 
 }  // namespace lumitexel

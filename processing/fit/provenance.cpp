@@ -185,6 +185,8 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
   return object.dump(2);
 }
 
+std::string fitted_session_key(const Model& model) { return json::parse(model.provenance_json).value("session_key", ""); }
+
 LayoutOptions layout_of(const Model& model) {
   const json provenance = json::parse(model.provenance_json);
   const bool of_mesh = provenance.contains("layout") && provenance.at("layout").value("from", "") == "mesh";

@@ -11,6 +11,9 @@ namespace lumitexel {
 // rms, rms_by_channel, rms_by_material, texels_by_material, prior.
 std::string provenance_json(const CalibratedSession& session, const FitOptions& options, const FitSummary& summary);
 
+// Key of the session that the model was fitted to (CalibratedSession::key); empty where the model does not say.
+std::string fitted_session_key(const Model& model);
+
 // What lay_out needs to make the model's atlas once more.
 LayoutOptions layout_of(const Model& model);
 

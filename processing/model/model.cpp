@@ -45,6 +45,11 @@ FitStage last_stage(const Model& model) {
   return last;
 }
 
+// Stages before normals were fitted to samples as photographed, unless there are no others.
+int bounces_taken_out(const Model& model, FitStage stage) {
+  return !has_normals(model) || stage == FitStage::Normal ? model.indirect_bounces : 0;
+}
+
 LayerAtStage layer_at(const Model& model, FitStage stage) {
   if (has_normals(model) && stage < FitStage::Normal) {
     const ReflectanceLayer& layer = *model.before_normals;

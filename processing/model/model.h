@@ -70,6 +70,8 @@ inline bool has_normals(const Model& model) { return model.before_normals.has_va
 bool has_principal_functions(const Model& model);
 bool holds_stage(const Model& model, FitStage stage);
 FitStage last_stage(const Model& model);  // of those that it holds
+// After how many bounces light between surfaces was taken out of the samples that the stage was fitted to; 0: it is in the reflectance.
+int bounces_taken_out(const Model& model, FitStage stage);
 
 // The texels' materials and weights at a stage that goes beyond one BRDF for all: the stages before Normal have a layer of their own
 // where normals were fitted. A stage that the model does not hold is as the last one before it.

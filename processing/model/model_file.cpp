@@ -12,6 +12,7 @@
 #include "processing/model/basis_file.h"
 #include "processing/model/model_hashes.h"
 #include "processing/surface/mesh_file.h"
+#include "rig/replace_directory.h"
 #include "rig/whole_file.h"
 
 namespace lumitexel {
@@ -109,14 +110,6 @@ bool is_model(const fs::path& directory) {
 
 fs::path sibling(const fs::path& target, const std::string& suffix) {
   return target.parent_path() / ("." + target.filename().string() + suffix);
-}
-
-void replace_directory(const fs::path& fresh, const fs::path& target) {
-  const fs::path old = sibling(target, ".replaced");
-  fs::remove_all(old);
-  if (fs::exists(target)) fs::rename(target, old);
-  fs::rename(fresh, target);
-  fs::remove_all(old);
 }
 
 // ---- reading

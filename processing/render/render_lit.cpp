@@ -116,12 +116,14 @@ const char* to_string(RenderEnd end) {
       return "time";
     case RenderEnd::Noise:
       return "noise";
+    case RenderEnd::Stopped:
+      return "stopped";
   }
   return "unknown";
 }
 
 LitView render_lit(const Model& model, const View& view, const Lighting& lighting, const LitOptions& options,
-                   Progress& progress, const Clock& clock) {
+                   Progress& progress, const Clock& clock, std::stop_token stop) {
   check(model, view, lighting, options);
   const RenderLimits& limits = options.limits;
   Advance advance(limits, progress, clock);
@@ -143,6 +145,10 @@ LitView render_lit(const Model& model, const View& view, const Lighting& lightin
       break;
     }
     if (result.samples_per_pixel == limits.samples_per_pixel) break;
+    if (stop.stop_requested()) {
+      result.end = RenderEnd::Stopped;
+      break;
+    }
     if (result.seconds + slowest_pass_s > limits.time_s) {
       result.end = RenderEnd::Time;
       break;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <stop_token>
 
 #include "drivers/clock.h"
 #include "processing/render/path_tracer.h"
@@ -30,8 +31,8 @@ struct LitOptions {
   RenderLimits limits;
 };
 
-enum class RenderEnd { Samples, Time, Noise };
-const char* to_string(RenderEnd end);  // "samples", "time", "noise"
+enum class RenderEnd { Samples, Time, Noise, Stopped };
+const char* to_string(RenderEnd end);  // "samples", "time", "noise", "stopped"
 
 struct LitView {
   Image radiance;                 // the model's channels
@@ -43,10 +44,11 @@ struct LitView {
   RenderEnd end = RenderEnd::Samples;
 };
 
-// The view's own light plays no part unless it is among the lamps. Throws BadInput for a lamp or an environment whose
-// channels are not the model's, and for limits or bounces that make no sense.
+// The view's own light plays no part unless it is among the lamps. Once `stop` is requested no further pass is begun: what is done by then is
+// the result, one pass at least. Throws BadInput for a lamp or an environment whose channels are not the model's, and for limits or bounces that
+// make no sense.
 LitView render_lit(const Model& model, const View& view, const Lighting& lighting, const LitOptions& options,
-                   Progress& progress, const Clock& clock);
+                   Progress& progress, const Clock& clock, std::stop_token stop = {});
 
 // The environment alone, without a word about how far it is.
 LitView render_environment(const Model& model, const View& view, const Environment& environment,

@@ -39,6 +39,7 @@ struct ExportSettings {
 
 CommandResult export_command(const ExportSettings& settings, CommandContext& context) {
   const ExportFormat format = export_format_from_string(settings.to);
+  check_export_directory(settings.out);
   Model model = model_given("MODEL", settings.model);
   if (!settings.mesh.empty()) model = carried_to(std::move(model), read_mesh(settings.mesh), settings.mesh);
   const ConversionLoss loss = export_model(model, format, settings.out, context.progress);

@@ -40,6 +40,8 @@ std::vector<KnownMaterial> measured_materials() {
 CommandResult report_command(const ReportSettings& settings, CommandContext& context) {
   require_writable_folder("--page", settings.out);
   const Model model = model_given("MODEL", settings.model);
+  const fs::path out = settings.out.empty() ? fs::path(settings.model) / "report.html" : fs::path(settings.out);
+  require_writable_folder("--page", out);  // the usual place, too
   std::optional<CalibratedSession> session;
   std::optional<Evaluation> evaluation;
   CalibrationSummary calibration;
@@ -63,7 +65,6 @@ CommandResult report_command(const ReportSettings& settings, CommandContext& con
     subject.known_source = "the MERL database of measured materials, as fitted by Bagher, Soler and Holzschuch (2012)";
   }
   if (!settings.without_viewer) subject.viewer = viewer_section(viewer_page(subject.name, model));
-  const fs::path out = settings.out.empty() ? fs::path(settings.model) / "report.html" : fs::path(settings.out);
   const std::string data = report_json(subject);
   const std::string page = model_report(subject, data, context.progress);
   write_whole_file(out, page);

@@ -40,6 +40,7 @@ CommandResult view_command(const ViewSettings& settings, CommandContext& context
   const Model model = model_given("MODEL", settings.model);
   const fs::path folder = without_trailing_slash(settings.model);
   const fs::path out = settings.out.empty() ? fs::path(folder.string() + ".html") : fs::path(settings.out);
+  require_writable_folder("--out", out);  // the usual place, too
   const ViewerPage page = page_of(folder.filename().string(), model, settings, context);
   write_whole_file(out, page.html);
   CommandResult result;

@@ -1,25 +1,52 @@
 #include "rig/console/interrupt.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <cstdlib>
-#include <thread>
+#include <cstring>
+#include <string>
 
 #include "drivers/clock.h"
+#include "drivers/error.h"
 
 namespace lumitexel {
 
 namespace {
 
 constexpr double kLampsOff_s = 1.5;
+constexpr int kEnding[] = {SIGINT, SIGTERM};
 
-// Only what a signal handler may do.
+// Only what a signal handler may do, here and below.
 void end_with_a_word(int number) {
   constexpr char kWord[] = "\nlumitexel: stopped; its results were not written, or not all of them\n";
   [[maybe_unused]] const auto written = write(STDERR_FILENO, kWord, sizeof kWord - 1);
   std::signal(number, SIG_DFL);
   std::raise(number);
+}
+
+std::atomic<int> wake_into = -1;
+static_assert(std::atomic<int>::is_always_lock_free, "a signal's handler reads it");
+
+void ask_to_stop(int number) {
+  const int before = errno;
+  std::signal(number, end_with_a_word);
+  constexpr char kWord[] = "\nlumitexel: stopping once what is under way is done; the same again ends at once and writes nothing\n";
+  [[maybe_unused]] auto written = write(STDERR_FILENO, kWord, sizeof kWord - 1);
+  written = write(wake_into, "", 1);
+  errno = before;
+}
+
+// Who ignores a signal, as a script's background does, goes on to.
+void handle_unless_ignored(void (*handler)(int)) {
+  for (const int number : kEnding) {
+    struct sigaction now {};
+    sigaction(number, nullptr, &now);
+    if (now.sa_handler != SIG_IGN) std::signal(number, handler);
+  }
 }
 
 }  // namespace
@@ -48,10 +75,24 @@ std::stop_token stop_on_interrupt() {
   return source.get_token();
 }
 
-void end_on_interrupt() {
-  for (const int number : {SIGINT, SIGTERM}) {
-    if (std::signal(number, SIG_IGN) != SIG_IGN) std::signal(number, end_with_a_word);  // who ignores it, as a script's background does, goes on to
-  }
+void end_on_interrupt() { handle_unless_ignored(end_with_a_word); }
+
+StopOnInterrupt::StopOnInterrupt() {
+  if (pipe2(wake_, O_CLOEXEC) != 0) throw Error(std::string("no pipe for Ctrl-C: ") + std::strerror(errno));
+  waiting_ = std::jthread([this] {
+    char byte = 0;
+    if (read(wake_[0], &byte, 1) == 1) source_.request_stop();
+  });
+  wake_into = wake_[1];
+  handle_unless_ignored(ask_to_stop);
+}
+
+StopOnInterrupt::~StopOnInterrupt() {
+  handle_unless_ignored(end_with_a_word);
+  wake_into = -1;
+  close(wake_[1]);  // the pipe's end, if no byte came
+  waiting_.join();
+  close(wake_[0]);
 }
 
 }  // namespace lumitexel

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <stop_token>
+#include <thread>
 
 namespace lumitexel {
 
@@ -12,5 +13,21 @@ std::stop_token stop_on_interrupt();
 
 // SIGINT and SIGTERM end the program as usual, after a line on stderr that says so.
 void end_on_interrupt();
+
+// After end_on_interrupt: while one lives, the first of these signals requests a stop instead, after a line on stderr; the next one ends the program.
+// For work of which the part that is done is worth writing. Signals that are ignored stay so. One at a time.
+class StopOnInterrupt {
+ public:
+  StopOnInterrupt();  // throws Error where the system gives no pipe
+  ~StopOnInterrupt();
+  StopOnInterrupt(const StopOnInterrupt&) = delete;
+  StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
+  std::stop_token token() const { return source_.get_token(); }
+
+ private:
+  std::stop_source source_;
+  int wake_[2];           // a pipe: what a signal's handler may do is write into it
+  std::jthread waiting_;  // for a byte in it, or its end
+};
 
 }  // namespace lumitexel

@@ -18,4 +18,10 @@ void require_writable_folder(const std::string& option, const std::filesystem::p
   }
 }
 
+PendingDirectory pending_output(const std::string& option, const std::filesystem::path& folder) try {
+  return PendingDirectory(folder);
+} catch (const Error& error) {
+  throw BadInput(option, error.what(), "a place that can be written to");
+}
+
 }  // namespace lumitexel

@@ -50,8 +50,8 @@ void add_light_options(Command& command, RenderSettings& settings) {
 void add_quality_options(Command& command, RenderSettings& settings) {
   command.add_option("--bounces", settings.bounces,
                      "How often light may go from one surface of the model to another before it reaches the camera; 0: "
-                     "lights alone")
-      .capture_default_str();
+                     "lights alone. Default: of a session's view under its own lamp, as many as the fit took out of the photographs; else 0, and a "
+                     "note where the fit took some out");
   command.add_option("--spp", settings.samples_per_pixel,
                      "Rays a pixel for radiance. Under one lamp alone 1 (the pixel's centre) is the default, more a "
                      "fixed pattern; with an environment, "
@@ -104,7 +104,7 @@ void require_options_that_act(const RenderSettings& settings, Aov aov) {
                                                {!settings.environment.empty(), "--environment"},
                                                {settings.splat, "--splat"},
                                                {settings.camera_only, "--camera-only"},
-                                               {settings.bounces != 0, "--bounces"},
+                                               {settings.bounces.has_value(), "--bounces"},
                                                {settings.time_limit_s.has_value(), "--time-limit"},
                                                {settings.noise.has_value(), "--noise"}};
   for (const auto& [given, option] : idle) {
@@ -115,7 +115,7 @@ void require_options_that_act(const RenderSettings& settings, Aov aov) {
 
 void require_what_splats_can_show(const RenderSettings& settings) {
   const std::pair<bool, const char*> beyond[] = {{!settings.environment.empty(), "--environment"},
-                                                 {settings.bounces != 0, "--bounces"},
+                                                 {settings.bounces.value_or(0) != 0, "--bounces"},
                                                  {settings.samples_per_pixel.has_value(), "--spp"},
                                                  {settings.time_limit_s.has_value(), "--time-limit"},
                                                  {settings.noise.has_value(), "--noise"}};
@@ -125,7 +125,23 @@ void require_what_splats_can_show(const RenderSettings& settings) {
   }
 }
 
+// A level is a model of the last stage alone, whose normals are means or fitted without a sigma.
+void require_what_levels_hold(const RenderSettings& settings, Aov aov) {
+  if (settings.level == 0) return;
+  const std::string level = std::to_string(settings.level);
+  if (!settings.stage.empty()) {
+    throw BadInput("--stage", settings.stage + " with --level " + level, "one of them: a coarser level holds the last stage alone");
+  }
+  if (aov == Aov::NormalSigma) {
+    throw BadInput("--aov", settings.aov + " with --level " + level, "another map or no --level: coarser levels do not keep it");
+  }
+}
+
 }  // namespace
+
+FitStage RenderSettings::fit_stage() const {
+  return stage.empty() ? FitStage::Normal : named_value("--stage", stage, words_by_to_string(kFitStages));
+}
 
 void add_render_options(Command& command, RenderSettings& settings) {
   command.add_option("MODEL", settings.model, "Folder of the model").required();
@@ -146,10 +162,10 @@ void add_render_options(Command& command, RenderSettings& settings) {
       "--mesh", settings.mesh,
       "PLY or OBJ: put the maps on this mesh, the model's own (or the scan it was fitted on) bent or moved, with "
       "the same triangles in the same order; texels' normals turn with their triangles");
-  command.add_option("--level", settings.level, "Show a coarser level of the maps, made by mip: for pictures in which a pixel spans 2^level texels")
+  command.add_option("--level", settings.level, "Show a coarser level of the maps, made by mip, of the last stage alone: for pictures in which a pixel spans 2^level texels")
       .range(0, 8)
       .capture_default_str();
-  command.add_option("--png", settings.png, "Also write a tone-mapped preview");
+  command.add_option("--png", settings.png, "Also write a tone-mapped preview of the radiance");
 }
 
 void check_render_settings(const RenderSettings& settings, Aov aov) {
@@ -157,16 +173,17 @@ void check_render_settings(const RenderSettings& settings, Aov aov) {
   require_what_they_describe(settings);
   require_options_that_act(settings, aov);
   require_what_splats_can_show(settings);
+  require_what_levels_hold(settings, aov);
   if (std::filesystem::path(settings.out).extension() == ".png") {
     throw BadInput("--out", settings.out, "an .exr file, which is what is written; --png FILE for a preview beside it");
   }
-  if (settings.bounces < 0) throw BadInput("--bounces", std::to_string(settings.bounces), "0 or more");
+  if (settings.bounces.value_or(0) < 0) throw BadInput("--bounces", std::to_string(*settings.bounces), "0 or more");
 }
 
-LitOptions lit_options(const RenderSettings& settings) {
+LitOptions lit_options(const RenderSettings& settings, int bounces) {
   LitOptions options;
-  if (!settings.stage.empty()) options.stage = named_value("--stage", settings.stage, words_by_to_string(kFitStages));
-  options.path.bounces = settings.bounces;
+  options.stage = settings.fit_stage();
+  options.path.bounces = bounces;
   options.path.show_environment = settings.show_environment;
   const bool ends_otherwise = settings.time_limit_s.has_value() || settings.noise.has_value();
   options.limits.samples_per_pixel =

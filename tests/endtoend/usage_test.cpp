@@ -84,6 +84,15 @@ TEST(Usage, WhereNothingCanBeWrittenIsSaidBeforeTheWork) {
   expect_refused("fit S --out ''", {"--out", "no name"});
 }
 
+TEST(Usage, RenderRefusesWhatItWouldNotShow) {
+  const std::string render = "render M --session S --view v --out x.exr ";
+  expect_refused(render + "--level 2 --stage cluster", {"--stage: cluster with --level 2", "the last stage alone"});
+  expect_refused(render + "--level 2 --aov normal-sigma", {"--aov: normal-sigma with --level 2", "no --level"});
+  for (const char* idle : {"--png x.png", "--stage cluster", "--bounces 1", "--splat"}) {
+    expect_refused(render + "--aov normal " + idle, {"--aov: 'normal' with", "radiance only"});
+  }
+}
+
 TEST(Usage, AWrongValueIsAnsweredWithItsOptionAndTheRightOnes) {
   expect_refused("fit S --out M --family blinn", {"--family: 'blinn'", "lafortune, ggx, ward or auto"});
   expect_refused("fit S --out M --quality fine", {"--quality: 'fine'", "draft, standard or reference"});
@@ -130,7 +139,7 @@ TEST(Usage, OldNamesOfOptionsStillAct) {
 
 TEST(Usage, HelpSaysWhatOptionsTakeAndThatEveryCommandHasJson) {
   for (const char* command : {"commission", "plan", "simulate", "capture", "resume", "verify", "replay", "import", "calibrate", "fit",
-                              "experiment", "render", "evaluate", "tradeoff", "report", "selftest"}) {
+                              "experiment", "render", "mip", "evaluate", "tradeoff", "export", "report", "view", "selftest"}) {
     EXPECT_THAT(help_of(command), HasSubstr("--json")) << command;
   }
   for (const char* name : {"draft", "learning-5000", "errors-given", "views-8", "reference"}) EXPECT_THAT(help_of("tradeoff"), HasSubstr(name));

@@ -38,6 +38,23 @@ TEST(FitModel, AMatteSphereHasOneDiffuseMaterialOfItsAlbedo) {
   }
 }
 
+// The sphere in millimetres: its cameras stand inside it.
+TEST(FitModel, AMeshThatNoPhotographSeesIsToldBySizeAndDistance) {
+  const TemporaryFolder folder;
+  CalibratedSession session = sphere_session({view_of_origin("a", {0.5, 0, 0}, {0.6, 0.4, 0.3}), view_of_origin("b", {0, 0.25, 0}, {0.6, 0.4, 0.3}),
+                                              view_of_origin("out", {0, 9, 0}, {0.6, 0.4, 0.3})},
+                                             folder);
+  session.views.back().heldout = true;
+  for (Eigen::Vector3d& position : session.mesh.positions) position *= 1000.0;
+  NoProgress progress;
+  const auto fit = [&] { fit_model(session, FitOptions::preset("draft"), {}, progress); };
+  EXPECT_BAD_INPUT(fit(), "200 x 200 x 200 m about (0, 0, 0)", "0.25 to 0.5 m", "2 of 2 have its middle", "millimetres", "frame of the poses");
+  session.views[0].camera_from_world.prerotate(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()));  // looks away
+  EXPECT_BAD_INPUT(fit(), "1 of 2 have its middle");
+  for (View& view : session.views) view.heldout = true;
+  EXPECT_BAD_INPUT(fit(), "session", "all are held out");
+}
+
 TEST(FitModel, ProvenanceSaysWhatWasDone) {
   const TemporaryFolder folder;
   const FittedModel fitted = fit_sphere(2, folder);

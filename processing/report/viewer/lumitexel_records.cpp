@@ -29,8 +29,8 @@ std::optional<ErrorModel> recorded_error(const json& provenance) {
   return ErrorModel(options.at("relative_error").get<double>(), options.at("error_floor").get<double>());
 }
 
-void check_session(const Model& model, const CalibratedSession& session, const json& provenance, const Atlas& atlas) {
-  const std::string fitted_to = provenance.value("session_key", "");
+void check_session(const Model& model, const CalibratedSession& session, const Atlas& atlas) {
+  const std::string fitted_to = fitted_session_key(model);
   if (fitted_to != session.key || atlas.width != model.width || atlas.height != model.height || session.channels != model.channels) {
     throw BadInput("session", "content " + session.key, "the one that the model was fitted to, " + fitted_to);
   }
@@ -166,7 +166,7 @@ LumitexelRecords lumitexel_records(const Model& model, const CalibratedSession& 
   const RayScene scene(session.mesh);
   LayoutSummary ignored;
   const Atlas atlas = lay_out(session, choose_best_views(session, scene), layout_of(model), ignored);
-  check_session(model, session, provenance, atlas);
+  check_session(model, session, atlas);
   GatheredLumitexels gathered = gather_lumitexels(session, atlas, scene, progress);
   turn_to_fitted(model, gathered.set);
   const std::vector<float> indirect = take_indirect(model, session, gathered.set, progress);

@@ -171,6 +171,33 @@ INSTANTIATE_TEST_SUITE_P(Formats, StatedLoss,
                          testing::Values(std::pair(ExportFormat::Blender, "scene.json"), std::pair(ExportFormat::Materialx, "model.mtlx"),
                                          std::pair(ExportFormat::Mitsuba, "scene.xml"), std::pair(ExportFormat::Maps, "maps.json")));
 
+// Fails as a full disk would, when the textures are about to be written.
+struct FailingProgress final : Progress {
+  void begin(const std::string& stage, std::int64_t, const std::string&) override {
+    stages.push_back(stage);
+    if (stages.size() == 2) throw Error("no room");
+  }
+  void update(std::int64_t) override {}
+  std::vector<std::string> stages;
+};
+
+TEST(Export, WhatWasNotFinishedLeavesNothing) {
+  const TemporaryFolder folder;
+  const Model model = model_of(square_mesh(), 4, 4, diffuse_brdf(0.1, 0.1, 0.1));
+  for (const char* name : {"new", "below/new", "empty"}) {
+    if (std::string(name) == "empty") std::filesystem::create_directory(folder / name);
+    FailingProgress failing;
+    EXPECT_THROW(export_model(model, ExportFormat::Gltf, folder / name, failing), Error);
+    EXPECT_EQ(failing.stages.size(), 2u) << "fails where it should";
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1) << "the empty folder that was there";
+  EXPECT_TRUE(std::filesystem::is_empty(folder / "empty"));
+  NoProgress quiet;
+  export_model(model, ExportFormat::Gltf, folder / "empty", quiet);
+  EXPECT_TRUE(std::filesystem::exists(folder / "empty" / "model.gltf"));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+}
+
 TEST(Export, AFolderThatCannotBeMadeIsNamedBeforeTheWork) {
   const TemporaryFolder folder;
   write_whole_file(folder / "file", "");

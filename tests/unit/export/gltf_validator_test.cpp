@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "processing/export/export_model.h"
+#include "tests/unit/export/odd_models.h"
 #include "tests/unit/export/outside_checker.h"
 #include "tests/unit/plain_models.h"
 #include "tests/unit/temporary_folder.h"
@@ -27,6 +28,12 @@ TEST(GltfValidator, HasNeitherErrorsNorWarnings) {
 TEST(GltfValidator, NeitherWithNormalsAndTangents) {
   SKIP_WITHOUT_CHECKER(kValidator);
   expect_valid(with_own_normals(model_of(sphere_mesh(24, 12), 16, 8, diffuse_brdf(0.2, 0.1, 0.05))));
+}
+
+TEST(GltfValidator, NeitherWithHighlightsNorWithSurfaceThatNobodySaw) {
+  SKIP_WITHOUT_CHECKER(kValidator);
+  expect_valid(glossy_model());
+  expect_valid(partly_unseen_model());
 }
 
 TEST(GltfValidator, SeesAFileThatIsBroken) {

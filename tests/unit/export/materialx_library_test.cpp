@@ -3,6 +3,7 @@
 
 #include "processing/export/export_model.h"
 #include "rig/whole_file.h"
+#include "tests/unit/export/odd_models.h"
 #include "tests/unit/export/outside_checker.h"
 #include "tests/unit/plain_models.h"
 #include "tests/unit/temporary_folder.h"
@@ -43,6 +44,12 @@ TEST(MaterialxLibrary, MakesAShaderOfIt) {
 TEST(MaterialxLibrary, AlsoWithNormals) {
   SKIP_WITHOUT_CHECKER(kLibrary);
   expect_accepted(with_own_normals(sphere()), {"base.png", "normal.png"});
+}
+
+TEST(MaterialxLibrary, AlsoWithHighlightsAndWithSurfaceThatNobodySaw) {
+  SKIP_WITHOUT_CHECKER(kLibrary);
+  expect_accepted(glossy_model(), {"base.png", "specular.png", "roughness.png", "normal.png"});
+  expect_accepted(partly_unseen_model(), {"base.png", "specular.png", "roughness.png", "normal.png"});
 }
 
 struct Damage {

@@ -76,6 +76,34 @@ TEST(RenderLit, EndsInTimeWithThePictureOfThatManySamples) {
   EXPECT_FALSE(hurried.noise.has_value());
 }
 
+// Asks for a stop once so many thousandths are done.
+struct StoppingProgress final : Progress {
+  explicit StoppingProgress(std::int64_t steps) : most(steps) {}
+  void begin(const std::string&, std::int64_t, const std::string&) override {}
+  void update(std::int64_t steps) override {
+    if (steps >= most) source.request_stop();
+  }
+  std::int64_t most;
+  std::stop_source source;
+};
+
+TEST(RenderLit, StopsAfterThePassThatIsUnderWay) {
+  const Environment sky = uneven_sky(16, 8);
+  LitOptions options;
+  options.limits.samples_per_pixel = 10;
+  const auto stopped_at = [&](std::int64_t thousandths) {
+    StoppingProgress progress(thousandths);
+    return render_lit(plate(), view_from_above(16, 5.0), {{}, &sky}, options, progress, SystemClock(), progress.source.get_token());
+  };
+  const LitView third = stopped_at(250);  // in the middle of the third pass of ten
+  EXPECT_EQ(third.end, RenderEnd::Stopped);
+  EXPECT_EQ(third.samples_per_pixel, 3);
+  NoProgress silent;
+  EXPECT_EQ(third.radiance.data, lit({3}, sky, silent, SystemClock()).radiance.data);
+  EXPECT_EQ(stopped_at(0).samples_per_pixel, 1) << "the first pass is always made";
+  EXPECT_EQ(stopped_at(990).end, RenderEnd::Samples) << "nothing is missing";
+}
+
 TEST(RenderLit, EndsWhereTheNoiseIsLowEnoughAndTheNoiseIsTrue) {
   const Environment sky = constant_sky(1.0, 1.0, 1.0);
   LitOptions options;
