@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "processing/brdf/highlight.h"
+
 namespace lumitexel {
 namespace {
 
@@ -10,7 +12,6 @@ constexpr double kWeightWidth = 2.0;
 // Relative to at least this reflectance (1/sr): a metal has no diffuse light to vary by a fraction of.
 constexpr double kFaintest = 0.01;
 constexpr LobeGeometry kDiffuseGeometry = geometry_of_cosines(1.0, 0.7071067811865476, 0.7071067811865476);  // wi = wo, 45 degrees
-constexpr LobeGeometry kGlossGeometry = geometry_of_cosines(0.5, 0.8660254037844387, 0.8660254037844387); // mirror, 30 degrees
 
 // Mean over channels of b b^T, b the bases' reflectances relative to the material's at one geometry.
 BasisMatrix gram(const std::vector<Brdf>& basis, int channels, const LobeGeometry& geometry) {

@@ -7,6 +7,7 @@ namespace lumitexel {
 namespace {
 
 constexpr int kFillRounds = 64;  // texels; holes are at most as wide as what a foreground hides
+constexpr int kNormalRings = 2;  // as far as a bilinear look-up inside a patch reaches; farther away the form is another
 
 std::vector<std::int16_t> material_map(const Atlas& atlas, const LumitexelSet& lumitexels, const std::vector<int>& label) {
   std::vector<std::int16_t> map(static_cast<std::size_t>(atlas.width) * static_cast<std::size_t>(atlas.height),
@@ -25,6 +26,28 @@ void copy_texel(Model& model, std::size_t to, std::size_t from) {
     if (planes > 0) std::copy_n(&weights->data[from * planes], planes, &weights->data[to * planes]);
   }
   model.uncertainty.data[to] = 1.0f;  // borrowed, so nothing is known about this very texel
+}
+
+bool has_no_normal(const Model& model, std::size_t texel) {
+  const float* normal = &model.normal.data[3 * texel];
+  return std::all_of(normal, normal + 3, [](float x) { return x == 0.0f; });
+}
+
+// Around every texel with a normal, ring by ring, but for surface that no view saw. A look-up between a patch's last lumitexel and the texel beside it
+// would else fall back to the mesh's normal half of the way.
+void grow_normals(const std::vector<std::uint32_t>& unseen, Model& model) {
+  const auto width = static_cast<std::size_t>(model.width), texels = model.material.size();
+  for (int ring = 0; ring < kNormalRings; ++ring) {
+    std::vector<std::pair<std::size_t, std::size_t>> grown;  // to, from
+    for (std::size_t to = 0; to < texels; ++to) {
+      if (!has_no_normal(model, to)) continue;
+      const std::pair<bool, std::size_t> beside[] = {{to % width > 0, to - 1}, {(to + 1) % width > 0, to + 1}, {to >= width, to - width}, {to + width < texels, to + width}};
+      const auto* const from = std::find_if(std::begin(beside), std::end(beside), [&](const auto& there) { return there.first && !has_no_normal(model, there.second); });
+      if (from != std::end(beside)) grown.emplace_back(to, from->second);
+    }
+    for (const auto& [to, from] : grown) std::copy_n(&model.normal.data[3 * from], 3, &model.normal.data[3 * to]);
+  }
+  for (const std::size_t texel : unseen) std::fill_n(&model.normal.data[3 * texel], 3, 0.0f);
 }
 
 int most_common(const std::vector<std::int16_t>& map, std::size_t materials) {
@@ -109,6 +132,7 @@ void fill_atlas(const Atlas& atlas, const LumitexelSet& lumitexels, const std::v
   }
   fill_unseen(atlas.unseen_texels, model);  // first, so that no neighbour grows into them
   fill_holes(model, std::move(filled));
+  if (has_normals(model)) grow_normals(atlas.unseen_texels, model);
 }
 
 std::vector<std::vector<std::size_t>> neighbour_counts(const Atlas& atlas, const LumitexelSet& lumitexels,

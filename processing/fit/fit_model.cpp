@@ -17,12 +17,9 @@
 namespace lumitexel {
 namespace {
 
-// The paper's errors are as large everywhere as reflectance itself: no sample would be an outlier by them.
-std::vector<ErrorModel> outlier_errors(const Clustering& clustering, const ErrorModel& given, const FitOptions& options) {
+std::vector<ErrorModel> outlier_errors(const Clustering& clustering, const std::optional<ErrorModel>& of_all) {
   std::vector<ErrorModel> errors;
-  for (const FittedMaterial& material : clustering.materials) {
-    errors.push_back(options.method == FitMethod::Paper ? given : material.model.error);
-  }
+  for (const FittedMaterial& material : clustering.materials) errors.push_back(of_all.value_or(material.model.error));
   return errors;
 }
 
@@ -174,7 +171,9 @@ FittedModel fit_model(const CalibratedSession& session, const FitOptions& option
   }
 
   timer.begin("model");
-  summary.outliers = find_outliers(model, observations, outlier_errors(reflectance.clustering, error, options),
+  // The paper's errors are as large everywhere as reflectance itself: no sample would be an outlier by them.
+  if (options.method == FitMethod::Paper) summary.outlier_error = error;
+  summary.outliers = find_outliers(model, observations, outlier_errors(reflectance.clustering, summary.outlier_error),
                                    reflectance.clustering.label, reflectance.weights, session.views.size());
   model.outliers_csv = outliers_csv(summary.outliers, names_of(session.views), texels_of(gathered.set), atlas.width);
   timer.end();

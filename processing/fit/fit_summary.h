@@ -28,6 +28,7 @@ struct IndirectSummary {
   std::size_t concerned = 0;      // lumitexels where it can matter
   std::size_t samples = 0;        // of theirs, that were followed in the last round
   double share = 0;               // of these samples' reflectance that was taken out
+  int rounds_taken = 0;           // after which it was taken out, anew each time
   std::optional<IndirectWorth> worth;  // nothing: nobody asked
   std::vector<double> change;     // rms of what each round would change, over the rms of these samples; empty: not needed
   std::size_t dropped_paths = 0;  // that were not finite
@@ -55,6 +56,7 @@ struct FitSummary {
   std::optional<double> normal_sigma_scale;      // if normals were fitted (sigma_scale.h)
   std::optional<IndirectSummary> indirect;       // if light between surfaces was looked for
   Outliers outliers;                 // under the finished model
+  std::optional<ErrorModel> outlier_error;  // that they were told by, where not by each material's own
   std::vector<StageCost> stages;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "processing/fit/taken_light.h"
 #include "processing/interreflection/indirect_bound.h"
 
 namespace lumitexel {
@@ -13,14 +14,6 @@ constexpr double kFewestOfAll = 0.005;  // of the lumitexels: a crease or two is
 constexpr double kNewEnough = 0.005;    // rms change of the samples followed over their rms: less changes no fit
 
 double square(double x) { return x * x; }
-
-// The share of the model's indirect light that is to be taken, from sums over a lumitexel: t of the header, so that (measured - t) / indirect.
-// All of it where a sum is not positive, and nothing follows from them.
-double share_to_take(double measured, double fitted, double indirect) {
-  if (!(measured > 0.0 && fitted > 0.0 && indirect > 0.0)) return 1.0;
-  const double straight = 2.0 * measured / (1.0 + std::sqrt(1.0 + 4.0 * measured * indirect / square(fitted)));
-  return (measured - straight) / indirect;
-}
 
 }  // namespace
 
@@ -48,33 +41,11 @@ bool IndirectRemoval::can_matter() const {
   return static_cast<double>(summary_.concerned) > kFewestOfAll * static_cast<double>(bound_.size());
 }
 
-// Lumitexel by lumitexel and channel by channel.
-void IndirectRemoval::correct(IndirectLight& found) const {
-  const auto channels = static_cast<std::size_t>(lumitexels_.channels);
-  for (std::size_t t = 0; t < measured_.size(); ++t) {
-    const LumitexelTile& tile = lumitexels_.tiles[t];
-    for (std::size_t i = 0; i < tile.size(); ++i) {
-      for (std::size_t c = 0; c < channels; ++c) {
-        double measured = 0.0, taken = 0.0, indirect = 0.0;
-        const std::size_t first = tile.first_sample[i] * channels + c, last = tile.first_sample[i + 1] * channels + c;
-        for (std::size_t k = first; k < last; k += channels) {
-          measured += static_cast<double>(measured_[t][k]);
-          taken += static_cast<double>(taken_[t][k]);
-          indirect += static_cast<double>(found.reflectance[t][k]);
-        }
-        const double share = share_to_take(measured, measured - taken, indirect);
-        for (std::size_t k = first; k < last; k += channels) {
-          found.reflectance[t][k] *= static_cast<float>(share);
-          found.variance[t][k] *= static_cast<float>(square(share));
-        }
-      }
-    }
-  }
-}
-
 bool IndirectRemoval::remove(const Model& model, FitStage stage) {
   IndirectLight found = indirect_light(session_, lumitexels_, wanted_, model, stage, options_.light);
-  correct(found);
+  for (std::size_t t = 0; t < measured_.size(); ++t) {
+    scale_to_take(lumitexels_.tiles[t], lumitexels_.channels, measured_[t], taken_[t], found.reflectance[t], found.variance[t]);
+  }
   double change = 0.0, all = 0.0, light = 0.0, indirect = 0.0;
   std::size_t lumitexel = 0;
   for (std::size_t t = 0; t < measured_.size(); ++t) {
@@ -104,23 +75,12 @@ bool IndirectRemoval::remove(const Model& model, FitStage stage) {
     }
   }
   taken_ = std::move(found.reflectance);
+  ++summary_.rounds_taken;
   return true;
 }
 
 void IndirectRemoval::even_out_variance() {
-  const auto channels = static_cast<std::size_t>(lumitexels_.channels);
-  for (std::size_t t = 0; t < measured_.size(); ++t) {
-    LumitexelTile& tile = lumitexels_.tiles[t];
-    for (std::size_t i = 0; i < tile.size(); ++i) {
-      for (std::size_t c = 0; c < channels; ++c) {
-        const std::size_t first = tile.first_sample[i] * channels + c, last = tile.first_sample[i + 1] * channels + c;
-        double variance = 0.0;
-        for (std::size_t k = first; k < last; k += channels) variance += static_cast<double>(tile.variance[k] - measured_variance_[t][k]);
-        const double mean = first < last ? variance * static_cast<double>(channels) / static_cast<double>(last - first) : 0.0;
-        for (std::size_t k = first; k < last; k += channels) tile.variance[k] = measured_variance_[t][k] + static_cast<float>(mean);
-      }
-    }
-  }
+  for (std::size_t t = 0; t < measured_.size(); ++t) lumitexel::even_out_variance(measured_variance_[t], lumitexels_.channels, lumitexels_.tiles[t]);
 }
 
 void IndirectRemoval::put_back() {
@@ -130,6 +90,7 @@ void IndirectRemoval::put_back() {
     std::fill(taken_[t].begin(), taken_[t].end(), 0.0f);
   }
   summary_.share = 0.0;
+  summary_.rounds_taken = 0;
 }
 
 Image IndirectRemoval::map(int width, int height) const {

@@ -1,9 +1,5 @@
 // Light between the object's own surfaces taken out of the samples, where it can matter: predicted by the model so far, subtracted, and
-// predicted anew by the model that follows, until that changes nothing more or the rounds are used up.
-//
-// A model from which too little was taken is too bright, and predicts too much. Light by way of another surface is reflected twice where a lamp's is
-// once: with t the straight part of a lumitexel's light, d the straight part that the model was fitted to and I what the model sends by way of other
-// surfaces, I (t / d)^2 is what it should send. So t + I (t / d)^2 = what was photographed, solved for t.
+// predicted anew by the model that follows, until that changes nothing more or the rounds are used up. How much of it is taken: taken_light.h.
 #pragma once
 
 #include <optional>
@@ -29,8 +25,7 @@ class IndirectRemoval {
   // samples as photographed. Only where they change by so much that they should be fitted again: else false, and they are as they were. Variances
   // then have each sample's own scatter of its paths.
   bool remove(const Model& model, FitStage stage);
-  // Before a fit each lumitexel's samples get the mean of their scatter: a sample's own goes with how much its few paths happened to find, and would make
-  // samples count more from which too little is taken.
+  // Before a fit: see taken_light.h.
   void even_out_variance();
 
   // The samples as photographed again.
@@ -41,8 +36,6 @@ class IndirectRemoval {
   Image map(int width, int height) const;
 
  private:
-  void correct(IndirectLight& found) const;
-
   const CalibratedSession& session_;
   LumitexelSet& lumitexels_;
   InterreflectionOptions options_;

@@ -71,6 +71,11 @@ json counts_json(const CountByReason& count) {
   return object;
 }
 
+json outlier_error_json(const std::optional<ErrorModel>& error) {
+  if (!error) return nullptr;
+  return {{"relative", error->relative}, {"floor", error->floor}};
+}
+
 json outliers_json(const Outliers& outliers, const CalibratedSession& session) {
   json by_view = json::object(), by_material = json::array();
   for (std::size_t v = 0; v < outliers.by_view.size(); ++v) {
@@ -106,6 +111,7 @@ json indirect_json(const IndirectSummary& indirect, const IndirectOptions& light
           {"share_of_reflectance", indirect.share},
           {"change_by_round", indirect.change},
           {"taken_out", indirect.share > 0.0},
+          {"rounds_taken", indirect.rounds_taken},
           {"shown_by_photographs", worth_json(indirect.worth)},
           {"dropped_paths", indirect.dropped_paths}};
 }
@@ -180,6 +186,7 @@ std::string provenance_json(const CalibratedSession& session, const FitOptions& 
   if (summary.normal_sigma_scale) object["normal_sigma_scale"] = *summary.normal_sigma_scale;
   if (summary.indirect) object["light_between_surfaces"] = indirect_json(*summary.indirect, options.interreflections.light);
   object["outliers"] = outliers_json(summary.outliers, session);
+  object["outliers"]["error"] = outlier_error_json(summary.outlier_error);  // null: each material's own, in basis.json
   object["texels_by_material"] = summary.texels_by_material;
   object["prior"] = prior_json(summary.prior);
   return object.dump(2);

@@ -134,7 +134,7 @@ void set_materials(const Clustering& clustering, const Atlas& atlas, const Lumit
   const auto bases = material_bases(brdfs, counts, observations);
   for (std::size_t j = 0; j < brdfs.size(); ++j) {
     const auto end = bases[j].begin() + static_cast<std::ptrdiff_t>(std::min(bases[j].size(), most_bases));
-    model.materials.push_back({brdfs[j], {bases[j].begin(), end}, {}, clustering.materials[j].sigma});
+    model.materials.push_back({brdfs[j], {bases[j].begin(), end}, {}, clustering.materials[j].sigma, clustering.materials[j].model.error});
   }
   model.single = clustering.single.brdf;
 }

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "drivers/error.h"
 #include "processing/render/path_tracer.h"
 
 namespace lumitexel {
@@ -88,6 +89,9 @@ class TileLight {
 
 IndirectLight indirect_light(const CalibratedSession& session, const LumitexelSet& lumitexels, const std::vector<bool>& wanted,
                              const Model& model, FitStage stage, const IndirectOptions& options) {
+  if (options.paths < kReplicates || options.paths % kReplicates != 0) {
+    throw BadInput("paths a sample (IndirectOptions::paths)", std::to_string(options.paths), "an even number of 2 or more: each of two replicates follows half of them");
+  }
   const ModelSurface surface(model);
   const ReflectingModel reflecting(model, stage);
   IndirectLight result;

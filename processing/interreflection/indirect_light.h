@@ -25,7 +25,8 @@ struct IndirectLight {
   std::size_t dropped_paths = 0;    // that were not finite; they count as black
 };
 
-// For the lumitexels with wanted[i]; 0 for the others. Light is as the model at `stage` reflects it. The same bits for any number of threads.
+// For the lumitexels with wanted[i]; 0 for the others. Light is as the model at `stage` reflects it. The same bits for any number of threads. Throws BadInput on an odd
+// number of paths or none.
 IndirectLight indirect_light(const CalibratedSession& session, const LumitexelSet& lumitexels, const std::vector<bool>& wanted,
                              const Model& model, FitStage stage, const IndirectOptions& options);
 

@@ -1,5 +1,6 @@
 #include "processing/model/basis_file.h"
 
+#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -72,6 +73,31 @@ Json to_json(const Brdf& brdf, const BrdfSigma& sigma) {
     lobes.push_back(entries);
   }
   return {{"diffuse", diffuse}, {"lobes", lobes}};
+}
+
+Json rows_of(const ChannelMatrix& matrix) {
+  Json rows = Json::array();
+  for (Eigen::Index r = 0; r < matrix.rows(); ++r) {
+    Json row = Json::array();
+    for (Eigen::Index c = 0; c < matrix.cols(); ++c) row.push_back(matrix(r, c));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+Json to_json(const ErrorModel& error) {
+  Json correlation = nullptr;
+  if (error.whitening().size() > 0) {
+    const ChannelMatrix lower = error.whitening().inverse();
+    correlation = rows_of(lower * lower.transpose());
+  }
+  return {{"relative", error.relative},
+          {"floor", error.floor},
+          {"freedom", error.freedom < ErrorModel::kGaussian ? Json(error.freedom) : Json(nullptr)},
+          {"outlier_share", error.outlier_share},
+          {"outlier_scale", error.outlier_scale},
+          {"independence", error.independence},
+          {"correlation", correlation}};
 }
 
 Json to_json(const std::vector<Brdf>& brdfs) {
@@ -187,6 +213,31 @@ BrdfSigma sigma_from(const Field& field, const Brdf& brdf) {
   return sigma;
 }
 
+ChannelMatrix matrix_from(const Field& field, int channels) {
+  ChannelMatrix matrix(channels, channels);
+  Eigen::Index r = 0;
+  for (const Field& row : field.elements(channels)) {
+    Eigen::Index c = 0;
+    for (const Field& entry : row.elements(channels)) matrix(r, c++) = entry.number();
+    ++r;
+  }
+  return matrix;
+}
+
+ErrorModel error_from(const Field& field, int channels) {
+  constexpr double kMost = std::numeric_limits<double>::max(), kLeast = std::numeric_limits<double>::min();
+  ErrorModel error(field["relative"].number(0.0, kMost), field["floor"].number(0.0, kMost));
+  error.freedom = field["freedom"].is_null() ? ErrorModel::kGaussian : field["freedom"].number(kLeast, ErrorModel::kGaussian);
+  error.outlier_share = field["outlier_share"].number(0.0, 1.0);
+  error.outlier_scale = field["outlier_scale"].number(1.0, kMost);
+  error.independence = field["independence"].number(0.0, 1.0);
+  const Field correlation = field["correlation"];
+  if (correlation.is_null()) return error;
+  error.set_correlation(matrix_from(correlation, channels));
+  if (!error.whitening().allFinite() || !std::isfinite(error.log_determinant())) correlation.fail("no such matrix", "a positive definite one");
+  return error;
+}
+
 std::vector<Brdf> brdfs_from(const Field& field, int channels) {
   std::vector<Brdf> brdfs;
   for (const Field& entry : field.elements()) brdfs.push_back(brdf_from(entry, channels));
@@ -198,6 +249,7 @@ Json to_json(const std::vector<ModelMaterial>& materials) {
   for (const ModelMaterial& material : materials) {
     Json entry = {{"brdf", to_json(material.brdf)}};
     if (material.sigma) entry["sigma"] = to_json(material.brdf, *material.sigma);
+    if (material.error) entry["error"] = to_json(*material.error);
     entry["basis"] = to_json(material.basis);
     if (!material.projection_basis.empty()) entry["projection_basis"] = to_json(material.projection_basis);
     list.push_back(entry);
@@ -210,6 +262,7 @@ std::vector<ModelMaterial> materials_from(const Field& field, int channels) {
   for (const Field& entry : field.elements()) {
     ModelMaterial material{brdf_from(entry["brdf"], channels), brdfs_from(entry["basis"], channels), {}};
     if (entry.has("sigma")) material.sigma = sigma_from(entry["sigma"], material.brdf);
+    if (entry.has("error")) material.error = error_from(entry["error"], channels);
     if (entry.has("projection_basis")) material.projection_basis = brdfs_from(entry["projection_basis"], channels);
     materials.push_back(std::move(material));
   }

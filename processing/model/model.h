@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "processing/brdf/brdf_sigma.h"
+#include "processing/brdf/error_model.h"
 #include "processing/image/image.h"
 #include "processing/surface/mesh.h"
 
@@ -26,6 +27,7 @@ struct ModelMaterial {
   std::vector<Brdf> basis;  // what its texels mix, weights >= 0
   std::vector<Brdf> projection_basis{};  // as it was before principal function analysis; empty where that did not run
   std::optional<BrdfSigma> sigma{};      // of brdf; nothing in models of before it was kept
+  std::optional<ErrorModel> error{};     // that weighed the samples of its texels; nothing in models of before it was kept
 };
 
 // Which material every texel is, and how it mixes that material's basis: the maps have the atlas's size.
@@ -58,7 +60,7 @@ struct Model {
   // 2 channels: the most that it could be beside a lamp's light (indirect_bound.h), and what was taken out, as a share of the texel's samples; empty
   // where nobody looked.
   Image indirect{};
-  Image uncertainty;  // one-sigma of the texel's reflectance prediction, relative; 1 channel
+  Image uncertainty;  // one-sigma of the texel's reflectance prediction, relative (TexelWeights::relative_sigma); 1 channel
   Image samples;      // number of samples the texel was fitted to; 1 channel; 0 in filled-in texels
 
   std::string outliers_csv;     // what the model does not explain (outliers.h); empty if nobody looked

@@ -2,36 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "processing/brdf/highlight.h"
 #include "processing/normals/texel_normal.h"
 #include "processing/surface/gather_lumitexels.h"
 
 namespace lumitexel {
 namespace {
-
-constexpr double kGlossyRatio = 2.0, kNearHighlight = 0.1;
-
-double mean(const ChannelValues& f, int channels) {
-  double sum = 0.0;
-  for (int c = 0; c < channels; ++c) sum += f[static_cast<std::size_t>(c)];
-  return sum / channels;
-}
-
-double specular(const Brdf& brdf, const LobeGeometry& geometry) {
-  return mean(evaluate(brdf, geometry), brdf.channels) - mean(brdf.diffuse, brdf.channels);
-}
-
-// The mirror direction of light that comes at this angle.
-LobeGeometry mirror_geometry(double cos_i) {
-  const double sine = std::sqrt(std::max(0.0, 1.0 - cos_i * cos_i));
-  return lobe_geometry(Eigen::Vector3d::UnitZ(), {sine, 0.0, cos_i}, {-sine, 0.0, cos_i});
-}
-
-bool has_highlight(const Brdf& brdf) {
-  const LobeGeometry geometry = mirror_geometry(std::cos(std::numbers::pi / 6.0));
-  return mean(evaluate(brdf, geometry), brdf.channels) >= kGlossyRatio * mean(brdf.diffuse, brdf.channels);
-}
 
 struct Look {
   Eigen::Vector3d wi, wo;
@@ -76,11 +53,6 @@ double change_by_normal(const Model& model, const TexelShare& texel, const Eigen
   return squares > 0.0 ? std::sqrt(changes / squares) : 0.0;
 }
 
-bool near_highlight(const Brdf& brdf, const Eigen::Vector3d& normal, const Look& look) {
-  const LobeGeometry geometry = lobe_geometry(normal, look.wi, look.wo);
-  return geometry.cos_i > 0.0 && specular(brdf, geometry) >= kNearHighlight * specular(brdf, mirror_geometry(geometry.cos_i));
-}
-
 int material_of(const Model& model, const TexelShare& texel) {
   return model.material[static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(model.width) + static_cast<std::size_t>(texel.x)];
 }
@@ -107,7 +79,7 @@ std::optional<Doubt> doubt_at(const ModelSurface& surface, const CalibratedSessi
   const Eigen::Vector3d normal = surface.shading_normal(texel, point, FitStage::Normal);
   const std::vector<Look> looks = looks_at(surface, session, point);
   if (change_by_normal(model, texel, normal, looks) > model.uncertainty.at(texel.x, texel.y)) return Doubt::Normal;
-  const auto near = [&](const Look& look) { return near_highlight(material.brdf, normal, look); };
+  const auto near = [&](const Look& look) { return near_highlight(material.brdf, lobe_geometry(normal, look.wi, look.wo)); };
   if (has_highlight(material.brdf) && std::none_of(looks.begin(), looks.end(), near)) return Doubt::NoHighlight;
   return samples < static_cast<float>(material.basis.size()) ? Doubt::FewSamples : Doubt::Scatter;
 }

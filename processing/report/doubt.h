@@ -20,8 +20,7 @@ enum class Doubt {
 inline constexpr std::array<Doubt, 4> kDoubts{Doubt::Normal, Doubt::NoHighlight, Doubt::FewSamples, Doubt::Scatter};
 const char* to_string(Doubt doubt);  // "normal", "no highlight", "few samples", "scatter"
 
-// Nothing where the point's nearest texel was not fitted to samples. A material has a highlight if at 30 degrees towards the mirror direction
-// it is at least twice as bright as its diffuse part; a photograph is near it that sees a tenth of what the mirror direction adds.
+// Nothing where the point's nearest texel was not fitted to samples. Highlights, and which photographs are near one: processing/brdf/highlight.h.
 std::optional<Doubt> doubt_at(const ModelSurface& surface, const CalibratedSession& session, const TexturedPoint& point);
 
 struct DoubtfulPoint {

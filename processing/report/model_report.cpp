@@ -19,15 +19,19 @@ Json page_data(const ReportSubject& subject) {
   return {{"summary", summary_json(subject)},
           {"stages", stages_json(provenance, compared ? subject.evaluation : nullptr)},
           {"evaluation", compared ? Json::parse(evaluation_json(*subject.evaluation)) : Json(nullptr)},
+          {"pictures", compared ? shown_json(subject, ViewRenderer(subject.model)) : Json::array()},
           {"provenance", provenance},
           {"texels_by_material", texels_by_material(subject.model)},
+          {"materials", materials_json(subject.model)},
           {"coverage", coverage_json(subject.model)},
           {"uncertainty_from", doubt_json(subject)},
           {"normals", normals_json(subject.model)},
           {"light_between_surfaces", indirect_json(subject.model)},
+          {"setup", subject.session != nullptr ? setup_json(*subject.session) : Json(nullptr)},
           {"exposures", exposures_json(subject.exposures)},
           {"calibration", subject.calibration != nullptr ? summary_json(*subject.calibration) : Json(nullptr)},
-          {"nearest_materials", nearest_json(subject)}};
+          {"nearest_materials", nearest_json(subject)},
+          {"known_materials", subject.known.size()}};
 }
 
 }  // namespace
@@ -43,8 +47,8 @@ std::string model_report(const ReportSubject& subject, const std::string& data_j
 
   std::string body = headline(subject, data.at("summary"));
   if (compared) {
-    body += typical_comparison(subject, renderer);
-    body += comparison_section(subject, renderer, progress);
+    body += typical_comparison(subject, data.at("evaluation"), renderer);
+    body += comparison_section(subject, data.at("pictures"), data.at("evaluation"), renderer, progress);
   } else {
     body += html::section("Photographs",
                           "This page was made without the session's photographs: run the report with "
@@ -53,18 +57,18 @@ std::string model_report(const ReportSubject& subject, const std::string& data_j
   }
   body += subject.viewer;
   body += stage_section(data.at("stages"), provenance);
-  if (compared) body += photograph_error_section(*subject.evaluation);
-  body += material_section(subject, renderer);
-  body += nearest_section(subject);
+  if (compared) body += photograph_error_section(data.at("evaluation"));
+  body += material_section(subject, data.at("materials"), renderer);
+  body += nearest_section(subject, data.at("nearest_materials"), data.at("known_materials"));
   body += normals_section(subject, data.at("normals"), renderer, view);
   body += indirect_section(subject, data.at("light_between_surfaces"), view);
-  body += coverage_section(subject.model, renderer, view);
+  body += coverage_section(data.at("coverage"), renderer, view);
   body += doubt_section(subject, data.at("uncertainty_from"), view);
   body += choice_section(provenance);
   body += outlier_section(provenance);
   if (subject.session != nullptr) body += setup_section(*subject.session);
-  body += exposure_section(subject.exposures);
-  if (subject.calibration != nullptr) body += calibration_section(*subject.calibration);
+  body += exposure_section(subject.exposures, data.at("exposures"));
+  if (subject.calibration != nullptr) body += calibration_section(data.at("calibration"));
   body += timing_section(provenance) + definitions_section();
   return html::page(subject.name + " – Lumitexel report", kPageStyle, body, data_json);
 }

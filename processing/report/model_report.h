@@ -28,8 +28,8 @@ struct ReportSubject {
 };
 
 // Every number of the page, as JSON: {"summary": the sentences on top,
-// "stages": the fit's, "evaluation": as `lumitexel evaluate --json` or null, "provenance": the fit's, "texels_by_material": [texels that were fitted to
-// samples], "coverage": of the texels and their sigma, "uncertainty_from": shares by cause or null, "normals": tilts and sigmas or null, "exposures": a photograph each, "calibration": as `lumitexel calibrate --json` has it or null, "nearest_materials": [three for each material]}.
+// "stages": the fit's, "evaluation": as `lumitexel evaluate --json` or null, "pictures": what white is in them, "provenance": the fit's, "texels_by_material": [texels that were fitted to
+// samples], "materials": what each reflects, "coverage": of the texels and their sigma, "uncertainty_from": shares by cause or null, "normals": tilts and sigmas or null, "setup": where cameras and lights stood or null, "exposures": a photograph each, "calibration": as `lumitexel calibrate --json` has it or null, "nearest_materials": [three for each material], "known_materials": of how many}.
 std::string report_json(const ReportSubject& subject);
 // The page. data_json: report_json of the same subject, which also goes into its <script type="application/json" id="data">.
 std::string model_report(const ReportSubject& subject, const std::string& data_json, Progress& progress);

@@ -27,8 +27,7 @@ Json coverage_json(const Model& model) {
           {"relative_sigma", {{"median", share_below(sigma, 0.5)}, {"nine_tenths", share_below(sigma, 0.9)}}}};
 }
 
-std::string coverage_section(const Model& model, const ViewRenderer& renderer, const View& view) {
-  const Json data = coverage_json(model);
+std::string coverage_section(const Json& data, const ViewRenderer& renderer, const View& view) {
   const Json& samples = data.at("samples_a_texel");
   const Json& sigma = data.at("relative_sigma");
   const Image normal = renderer.render_aov(view, Aov::Normal), seen = renderer.render_aov(view, Aov::Samples), open = renderer.render_aov(view, Aov::Sigma);

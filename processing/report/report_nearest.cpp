@@ -32,8 +32,7 @@ Json nearest_json(const ReportSubject& subject) {
   return all;
 }
 
-std::string nearest_section(const ReportSubject& subject) {
-  const Json nearest = nearest_json(subject);
+std::string nearest_section(const ReportSubject& subject, const Json& nearest, const Json& known) {
   std::vector<std::vector<std::string>> rows;
   for (std::size_t m = 0; m < nearest.size(); ++m) {
     if (nearest[m].empty()) continue;
@@ -45,7 +44,7 @@ std::string nearest_section(const ReportSubject& subject) {
   }
   if (rows.empty()) return "";
   return html::section("What the materials resemble",
-                       "Each material beside the " + std::to_string(subject.known.size()) +
+                       "Each material beside the " + known.dump() +
                            (subject.known_source.empty() ? " materials known" : " of " + subject.known_source) +
                            ", the nearest first. A likeness in how light is reflected, which does not say what the material is made of. In "
                            "brackets the distance: root mean square difference of cube roots of f cos over light and view directions. 0 is the "

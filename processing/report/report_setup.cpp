@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "processing/calibration/calibration_summary_json.h"
 #include "processing/report/calibration_report.h"
 #include "processing/report/html.h"
 #include "processing/report/plan_drawing.h"
@@ -97,6 +98,18 @@ Json exposures_json(const std::vector<PhotographExposure>& exposures) {
   return list;
 }
 
+Json setup_json(const CalibratedSession& session) {
+  const auto list = [](const Eigen::Vector3d& v) { return Json{v.x(), v.y(), v.z()}; };
+  Json photographs = Json::array();
+  for (const View& view : session.views) {
+    photographs.push_back({{"photograph", view.name},
+                           {"heldout", view.heldout},
+                           {"camera_m", list(view.camera_in_world())},
+                           {"light", {{"point", view.light.type == Light::Type::Point}, {"vector", list(view.light.vector_in_world)}}}});
+  }
+  return photographs;
+}
+
 std::string setup_section(const CalibratedSession& session) {
   return html::section("Cameras and lights",
                        "Where the camera (the tip of a triangle, which opens towards what it sees) and the lamp (circles) stood for each photograph, in the mesh's "
@@ -106,7 +119,7 @@ std::string setup_section(const CalibratedSession& session) {
                            html::figure(plan_drawing(session, 0, 2), "Along the world's y axis") + "</div>\n");
 }
 
-std::string exposure_section(const std::vector<PhotographExposure>& exposures) {
+std::string exposure_section(const std::vector<PhotographExposure>& exposures, const Json& data) {
   if (exposures.empty()) return "";
   const bool brackets = std::any_of(exposures.begin(), exposures.end(), [](const PhotographExposure& e) { return !e.exposure_s.empty(); });
   const std::string source =
@@ -119,10 +132,11 @@ std::string exposure_section(const std::vector<PhotographExposure>& exposures) {
                        html::figure(brightness_chart(exposures),
                                     "How bright the object is in each photograph. Line: all but the darkest and the brightest hundredth of its "
                                     "pixels. Band: the middle half. Tick: the median. What is darker than the scale, as in deep shadow, ends at its left.") +
-                           exposure_table(exposures_json(exposures)));
+                           exposure_table(data));
 }
 
-std::string calibration_section(const CalibrationSummary& summary) {
+std::string calibration_section(const Json& data) {
+  const CalibrationSummary summary = summary_from_json(data);
   return summary.intensity.empty() ? given_poses_section(summary) : calibrated_views_section(summary);
 }
 

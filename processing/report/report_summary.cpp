@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
 
 #include "processing/evaluation/stage_caution.h"
@@ -63,6 +64,7 @@ Json prediction_json(const Evaluation& evaluation) {
           {"photographs", photographs},
           {"square_roots", number_or_null(error->sqrt_rms)},
           {"clipped", number_or_null(error->clipped_rms)},
+          {"psnr_db", number_or_null(error->psnr_db)},
           {"in_words", in_words(error->sqrt_rms)},
           {"shown", evaluation.views[*typical].image}};
 }
@@ -96,23 +98,19 @@ std::string tile(const std::string& value, const std::string& meaning) {
   return "<div class=\"tile\"><b>" + html::escaped(value) + "</b><span>" + html::escaped(meaning) + "</span></div>\n";
 }
 
-std::string tiles(const ReportSubject& subject, const Json& summary) {
-  std::int64_t texels = 0;
-  for (const std::int64_t count : texels_by_material(subject.model)) texels += count;
-  std::string text = "<div class=\"tiles\">" + tile(std::to_string(subject.model.materials.size()), "materials found") +
+std::string tiles(const Json& summary) {
+  const auto number = [](const Json& parent, const char* key, int digits) { return html::number(number_or_nan(parent, key), digits); };
+  std::string text = "<div class=\"tiles\">" + tile(number(summary, "materials", 8), "materials found") +
                      tile(share_text(summary.at("share_of_surface_measured").get<double>()), "of the surface measured") +
-                     tile(std::to_string(texels), "surface points (texels) measured") +
-                     tile(html::number(summary.at("samples").is_number() ? summary.at("samples").get<double>() : NAN, 8), "reflectance samples the fit used");
+                     tile(number(summary, "texels_measured", 10), "surface points (texels) measured") +
+                     tile(number(summary, "samples", 10), "reflectance samples the fit used");
   const Json& prediction = summary.at("prediction");
   if (prediction.is_object()) {
-    const auto& error = (prediction.at("kept_out_of_the_fit").get<bool>() ? subject.evaluation->heldout
-                                                                            : subject.evaluation->fit)[static_cast<std::size_t>(subject.evaluation->last_stage)];
     const std::string which = prediction.at("kept_out_of_the_fit").get<bool>() ? "photographs kept out of the fit" : "photographs of the fit";
-    text += tile(html::number(error->clipped_rms), "clipped relative error on " + which);
-    text += tile(html::number(error->psnr_db) + " dB", "PSNR on " + which);
+    text += tile(number(prediction, "clipped", 3), "clipped relative error on " + which);
+    text += tile(number(prediction, "psnr_db", 3) + " dB", "PSNR on " + which);
   }
-  const Json& seconds = summary.at("fit_seconds");
-  return text + tile(html::number(seconds.is_number() ? seconds.get<double>() : NAN) + " s", "computing time of the fit") + "</div>";
+  return text + tile(number(summary, "fit_seconds", 3) + " s", "computing time of the fit") + "</div>";
 }
 
 }  // namespace
@@ -124,8 +122,10 @@ Json summary_json(const ReportSubject& subject) {
     if (stage.contains("seconds") && stage.at("seconds").is_number()) seconds += stage.at("seconds").get<double>();
   }
   const bool compared = subject.session != nullptr && subject.evaluation != nullptr;
+  const std::vector<std::int64_t> texels = texels_by_material(subject.model);
   return {{"materials", subject.model.materials.size()},
           {"share_of_surface_measured", measured_area_share(subject.model)},
+          {"texels_measured", std::accumulate(texels.begin(), texels.end(), std::int64_t{0})},
           {"samples", provenance.contains("samples") ? provenance.at("samples") : Json(nullptr)},
           {"fit_seconds", seconds},
           {"prediction", compared ? prediction_json(*subject.evaluation) : Json(nullptr)}};
@@ -139,10 +139,10 @@ std::string headline(const ReportSubject& subject, const Json& summary) {
   text += html::escaped(surface_text(summary)) + "</p>\n";
   const std::string caution = subject.evaluation != nullptr ? in_words(stage_cautions(*subject.evaluation), subject.evaluation->last_stage) : "";
   if (!caution.empty()) text += "<p class=\"caution\">Caution: " + html::escaped(caution) + ".</p>\n";
-  return text + tiles(subject, summary) + "</header>\n";
+  return text + tiles(summary) + "</header>\n";
 }
 
-std::string typical_comparison(const ReportSubject& subject, const ViewRenderer& renderer) {
+std::string typical_comparison(const ReportSubject& subject, const Json& evaluation, const ViewRenderer& renderer) {
   const std::optional<std::size_t> typical = typical_view(*subject.evaluation);
   if (!typical) return "";
   const View& view = subject.session->views[*typical];
@@ -154,7 +154,7 @@ std::string typical_comparison(const ReportSubject& subject, const ViewRenderer&
                       "Photograph " + view.name + kind + (alone ? "" : "Of its kind the one with the median error: neither the best nor the worst.")) +
          html::figure(html::picture(pictures.rendering, "rendering of " + view.name),
                       "What the model says it should look like, at the same exposure: clipped relative error " +
-                          html::number(subject.evaluation->views[*typical].error.clipped_rms) + ".") +
+                          html::number(number_or_nan(evaluation.at("views").at(*typical), "clipped_rms")) + ".") +
          "</div>\n";
 }
 

@@ -72,16 +72,17 @@ std::size_t longest_list(const Json& lists) {
   return longest;
 }
 
-std::vector<std::string> error_row(const std::string& name, const ImageError& error) {
-  return {name, html::number(error.relative_rms), html::number(error.clipped_rms), html::number(error.sqrt_rms),
-          html::number(error.psnr_db)};
+std::vector<std::string> error_row(const std::string& name, const Json& error) {
+  std::vector<std::string> row{name};
+  for (const char* figure : {"relative_rms", "clipped_rms", "sqrt_rms", "psnr_db"}) row.push_back(html::number(number_or_nan(error, figure)));
+  return row;
 }
 
-std::string error_table(const std::string& title, const ErrorByStage& errors) {
+std::string error_table(const std::string& title, const Json& errors) {
   std::vector<std::vector<std::string>> rows;
   for (const FitStage stage : kFitStages) {
-    const auto& error = errors[static_cast<std::size_t>(stage)];
-    if (error && std::isfinite(error->relative_rms)) rows.push_back(error_row(stage_title(stage), *error));
+    const Json& error = errors.at(to_string(stage));
+    if (std::isfinite(number_or_nan(error, "relative_rms"))) rows.push_back(error_row(stage_title(stage), error));
   }
   if (rows.empty()) return "";
   return "<h3>" + html::escaped(title) + "</h3>" +
@@ -186,22 +187,22 @@ std::string stage_section(const Json& stages, const Json& provenance) {
                  breakdown_tables(provenance));
 }
 
-std::string photograph_error_section(const Evaluation& evaluation) {
+std::string photograph_error_section(const Json& evaluation) {
   std::vector<std::vector<std::string>> rows;
-  for (const ViewEvaluation& view : evaluation.views) {
-    std::vector<std::string> row = error_row(view.image, view.error);
-    row.insert(row.begin() + 1, view.heldout ? "held out" : "fit");
+  for (const Json& view : evaluation.at("views")) {
+    std::vector<std::string> row = error_row(view.at("image").get<std::string>(), view);
+    row.insert(row.begin() + 1, view.at("split") == "heldout" ? "held out" : "fit");
     rows.push_back(row);
   }
   std::string note =
       "Whole pictures re-rendered and compared with the photographs, over the object's pixels. A model can learn "
       "the photographs of the fit by heart; only those kept out tell how it does in a new view and light.";
-  if (!evaluation.same_session)
+  if (!evaluation.at("same_session").get<bool>())
     note += " The model was fitted to another session than the one it is compared with here.";
   return html::section(
       "How well photographs are predicted", note,
-      error_table("Photographs kept out of the fit", evaluation.heldout) +
-          error_table("Photographs used in the fit", evaluation.fit) + "<h3>Each photograph</h3>" +
+      error_table("Photographs kept out of the fit", evaluation.at("heldout_by_stage")) +
+          error_table("Photographs used in the fit", evaluation.at("fit_by_stage")) + "<h3>Each photograph</h3>" +
           html::table({"photograph", "role", "relative RMS", "clipped", "square roots", "PSNR (dB)"}, rows));
 }
 

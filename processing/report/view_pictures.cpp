@@ -70,6 +70,19 @@ void blacken_uncounted(Image& image, const std::vector<std::uint8_t>& counted) {
   }
 }
 
+double white_of(const RadianceImage& photograph, const std::vector<std::uint8_t>& counted) {
+  const double white = percentile(photograph.radiance, counted, kWhiteFraction);
+  return white > 0.0 ? white : 1.0;
+}
+
+// Where a pixel's centre meets the mesh.
+std::vector<std::uint8_t> hits_of(const ViewRenderer& renderer, const View& view) {
+  const Image normal = renderer.render_aov(view, Aov::Normal);
+  std::vector<std::uint8_t> hit(normal.data.size() / 3);
+  for (std::size_t i = 0; i < hit.size(); ++i) hit[i] = std::any_of(&normal.data[3 * i], &normal.data[3 * i] + 3, [](float x) { return x != 0.0f; });
+  return hit;
+}
+
 }  // namespace
 
 std::array<float, 3> false_colour(double position) {
@@ -81,6 +94,11 @@ std::array<float, 3> false_colour(double position) {
   return colour;
 }
 
+double shown_white(const ViewRenderer& renderer, const View& view, int channels) {
+  const RadianceImage photograph = read_photograph(view, channels);
+  return white_of(photograph, object_pixels(photograph, hits_of(renderer, view)));
+}
+
 ViewPictures make_view_pictures(const ViewRenderer& renderer, const View& view, int channels, FitStage stage,
                                 int width_px) {
   RadianceImage photograph = read_photograph(view, channels);
@@ -90,8 +108,7 @@ ViewPictures make_view_pictures(const ViewRenderer& renderer, const View& view, 
   blacken_uncounted(rendered.radiance, counted);
 
   ViewPictures pictures;
-  const double white = percentile(photograph.radiance, counted, kWhiteFraction);
-  pictures.white = white > 0.0 ? white : 1.0;
+  pictures.white = white_of(photograph, counted);
   const Box box = box_of(counted, view.camera.width_px, view.camera.height_px);
   const int factor = std::max(1, (box.right - box.left + width_px - 1) / width_px);
   const Image small_photograph = reduced(photograph.radiance, box, factor);

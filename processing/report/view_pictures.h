@@ -20,6 +20,9 @@ inline constexpr double kDifferenceRange = 0.3;
 // position in [-1, 1]: from blue (the rendering is too dark) over near-white to red (too bright).
 std::array<float, 3> false_colour(double position);
 
+// ViewPictures::white of the view.
+double shown_white(const ViewRenderer& renderer, const View& view, int channels);
+
 ViewPictures make_view_pictures(const ViewRenderer& renderer, const View& view, int channels, FitStage stage,
                                 int width_px);
 

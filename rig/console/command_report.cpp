@@ -37,6 +37,15 @@ std::vector<KnownMaterial> measured_materials() {
   return known;
 }
 
+// Samples only of the photographs that the model was fitted to.
+std::string viewer_of(const ReportSubject& subject, CommandContext& context) {
+  if (subject.model.mesh.triangles.size() > kMostViewerTriangles) return viewer_left_out(subject.model.mesh.triangles.size());
+  if (subject.evaluation == nullptr || !subject.evaluation->same_session) return viewer_section(viewer_page(subject.name, subject.model));
+  const LumitexelRecords records = lumitexel_records(subject.model, *subject.session, context.progress);
+  const ViewerSamples samples{*subject.session, records, kMostViewerBytes - kMostViewerBytes / 20};  // packed once more it may grow by a hundredth
+  return viewer_section(viewer_page(subject.name, subject.model, &samples));
+}
+
 CommandResult report_command(const ReportSettings& settings, CommandContext& context) {
   require_writable_folder("--page", settings.out);
   const Model model = model_given("MODEL", settings.model);
@@ -64,7 +73,7 @@ CommandResult report_command(const ReportSettings& settings, CommandContext& con
     subject.known = known;
     subject.known_source = "the MERL database of measured materials, as fitted by Bagher, Soler and Holzschuch (2012)";
   }
-  if (!settings.without_viewer) subject.viewer = viewer_section(viewer_page(subject.name, model));
+  if (!settings.without_viewer) subject.viewer = viewer_of(subject, context);
   const std::string data = report_json(subject);
   const std::string page = model_report(subject, data, context.progress);
   write_whole_file(out, page);
@@ -83,10 +92,10 @@ void add_report_command(CLI::App& app, CommandAction& action) {
   auto settings = std::make_shared<ReportSettings>();
   Command command(app, "report", "One self-contained HTML page: pictures, errors, materials, timings");
   command.add_option("MODEL", settings->model, "Folder of the model").required();
-  command.add_option("--session", settings->session, "Session whose photographs are shown beside their re-renderings");
+  command.add_option("--session", settings->session, "Session whose photographs are shown beside their re-renderings, and their samples in the interactive view");
   command.add_option("--out,--page", settings->out, "HTML file to write (default: MODEL/report.html)");
   command.add_flag("--without-viewer", settings->without_viewer,
-                   "Leave out the interactive view, which adds about as much to the page as lumitexel view writes (at most 16 MB)");
+                   "Leave out the interactive view, which adds about as much to the page as lumitexel view writes (at most 16 MB, with as many samples as fit)");
   command.callback([settings, &action] {
     action = [settings](CommandContext& context) { return report_command(*settings, context); };
   });

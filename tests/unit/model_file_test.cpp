@@ -47,6 +47,13 @@ Model odd_model() {
   for (float& value : model.projection_weights.data) value = unit(random);
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   model.materials[0].sigma = BrdfSigma{{0.1, unknown, 1.0 / 3.0}, {{LobeSigma{0.2, unknown, 0.01}, LobeSigma{unknown, 1e-300, 2.0}, LobeSigma{}}}};
+  ErrorModel error(0.1, 1.0 / 300.0);
+  error.freedom = 2.5;
+  error.independence = 1.0 / 7.0;
+  ChannelMatrix correlation(3, 3);
+  correlation << 1.0, 0.9, 0.7, 0.9, 1.1, 0.6, 0.7, 0.6, 1.0;
+  error.set_correlation(correlation);
+  model.materials[0].error = error;
   model.outliers_csv = "view,reason\na,dark\n";
   for (float& value : model.uncertainty.data) value = unit(random);
   for (std::size_t t = 0; t < model.material.size(); ++t) {
@@ -65,6 +72,11 @@ Model model_on_fitted_normals() {
   ReflectanceLayer before{{{odd_brdf(random), {odd_brdf(random), odd_brdf(random)}, {}}}, std::vector<std::int16_t>(30, 0), Image(6, 5, 2), {}};
   for (float& value : before.weights.data) value = unit(random);
   before.material[3] = Model::kNoMaterial;
+  ErrorModel outlying(0.05, 0.002);  // two normal distributions, channels apart
+  outlying.freedom = ErrorModel::kGaussian;
+  outlying.outlier_share = 0.02;
+  outlying.outlier_scale = 20.0 / 3.0;
+  before.materials[0].error = outlying;
   model.before_normals = before;
   model.normal_sigma = Image(6, 5, 1);
   for (float& value : model.normal_sigma.data) value = unit(random);
@@ -101,11 +113,29 @@ void expect_equal(const std::optional<BrdfSigma>& a, const std::optional<BrdfSig
   }
 }
 
+// What a file holds of how channels go together is the matrix itself, of which its root is made once more.
+constexpr double kRootOfAMatrix = 1e-13;
+
+void expect_equal(const std::optional<ErrorModel>& a, const std::optional<ErrorModel>& b) {
+  ASSERT_EQ(a.has_value(), b.has_value());
+  if (!a) return;
+  EXPECT_EQ(a->relative, b->relative);
+  EXPECT_EQ(a->floor, b->floor);
+  EXPECT_EQ(a->freedom, b->freedom);
+  EXPECT_EQ(a->outlier_share, b->outlier_share);
+  EXPECT_EQ(a->outlier_scale, b->outlier_scale);
+  EXPECT_EQ(a->independence, b->independence);
+  ASSERT_EQ(a->whitening().size(), b->whitening().size());
+  if (a->whitening().size() > 0) EXPECT_LT((a->whitening() - b->whitening()).cwiseAbs().maxCoeff(), kRootOfAMatrix);
+  EXPECT_NEAR(a->log_determinant(), b->log_determinant(), kRootOfAMatrix);
+}
+
 void expect_equal(const std::vector<ModelMaterial>& a, const std::vector<ModelMaterial>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t m = 0; m < a.size(); ++m) {
     expect_equal(a[m].brdf, b[m].brdf);
     expect_equal(a[m].sigma, b[m].sigma);
+    expect_equal(a[m].error, b[m].error);
     ASSERT_EQ(a[m].basis.size(), b[m].basis.size());
     ASSERT_EQ(a[m].projection_basis.size(), b[m].projection_basis.size());
     for (std::size_t k = 0; k < a[m].basis.size(); ++k) expect_equal(a[m].basis[k], b[m].basis[k]);
@@ -285,7 +315,12 @@ TEST_F(DamagedModel, EveryWrongFieldIsNamed) {
       {"basis.json", lobe + "phi_rad", "north", {lobe_name + "phi_rad", "north"}},
       {"basis.json", lobe + "exponent", 1e6, {lobe_name + "exponent", "logarithm"}},
       {"basis.json", lobe + "peak", 0.5, {lobe_name + "peak", "logarithm"}},
-      {"basis.json", lobe + "log_peak", "loud", {lobe_name + "log_peak"}}};
+      {"basis.json", lobe + "log_peak", "loud", {lobe_name + "log_peak"}},
+      {"basis.json", "/materials/0/error/relative", -0.1, {"basis.json.materials[0].error.relative", "-0.1"}},
+      {"basis.json", "/materials/0/error/freedom", 0, {"basis.json.materials[0].error.freedom"}},
+      {"basis.json", "/materials/0/error/outlier_scale", 0.5, {"basis.json.materials[0].error.outlier_scale"}},
+      {"basis.json", "/materials/0/error/correlation/2", {1.0}, {"basis.json.materials[0].error.correlation[2]", "1 entries"}},
+      {"basis.json", "/materials/0/error/correlation/0/0", 0.1, {"basis.json.materials[0].error.correlation", "positive definite"}}};
   for (const JsonDamage& damage : damages) {
     const std::string intact = read_whole_file(file(damage.file));
     edit_json(damage.file, damage.pointer, damage.value);
@@ -301,6 +336,12 @@ TEST_F(DamagedModel, MissingKeysAreNamed) {
     EXPECT_BAD_INPUT(read_model(model_), "basis.json.materials[1].brdf", key);
     write_whole_file(file("basis.json"), intact);
   }
+  const std::string intact = read_whole_file(file("basis.json"));
+  erase_key("basis.json", "/materials/0/error", "floor");
+  EXPECT_BAD_INPUT(read_model(model_), "basis.json.materials[0].error", "floor");
+  write_whole_file(file("basis.json"), intact);
+  erase_key("basis.json", "/materials/0", "error");  // as in models of before it was kept
+  EXPECT_FALSE(read_model(model_).materials[0].error);
   erase_key("model.json", "/atlas", "width");
   EXPECT_BAD_INPUT(read_model(model_), "model.json", "atlas", "width");
 }

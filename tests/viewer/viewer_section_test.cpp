@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "tests/unit/bad_input_matcher.h"
 #include "tests/unit/temporary_folder.h"
 #include "tests/viewer/browser_pictures.h"
 #include "tests/viewer/bumpy_model.h"
@@ -44,6 +45,16 @@ TEST(ViewerSection, SaysSoWhereThePageIsTooLarge) {
   EXPECT_LT(refused.size(), 1000u);
   // Packing what is packed already must not make it grow.
   EXPECT_LT(viewer_section(page).size(), page.html.size());
+}
+
+// The last leaf may hold one triangle: 8 times its number plus one has to be a single-precision number.
+TEST(ViewerPage, RefusesAMeshOfMoreTrianglesThanItsNumbersHold) {
+  const auto held = [](std::size_t triangles) { return static_cast<std::size_t>(static_cast<float>(8 * (triangles - 1) + 1)) == 8 * (triangles - 1) + 1; };
+  EXPECT_TRUE(held(kMostViewerTriangles));
+  EXPECT_FALSE(held(kMostViewerTriangles + 1));
+  Model model = layered_model();
+  model.mesh.triangles.resize(kMostViewerTriangles + 1, model.mesh.triangles.front());
+  EXPECT_BAD_INPUT(viewer_page("a model", model), "2097153 triangles", "2097152", "coarser mesh");
 }
 
 }  // namespace

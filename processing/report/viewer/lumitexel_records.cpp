@@ -5,11 +5,11 @@
 #include <optional>
 
 #include "drivers/error.h"
-#include "processing/brdf/error_model.h"
 #include "processing/brdf/ordered_sum.h"
 #include "processing/fit/observe.h"
 #include "processing/fit/provenance.h"
-#include "processing/interreflection/indirect_light.h"
+#include "processing/report/viewer/fit_errors.h"
+#include "processing/report/viewer/light_taken.h"
 #include "processing/report/viewer/listed_outliers.h"
 #include "processing/surface/best_view.h"
 #include "processing/surface/gather_lumitexels.h"
@@ -20,14 +20,6 @@ namespace {
 using nlohmann::json;
 
 constexpr auto kUsed = static_cast<std::uint8_t>(SampleVerdict::Used);
-constexpr std::size_t kFoundShare = 1;  // channel of Model::indirect
-
-// The error model of every material, if it was the one that the fit's options gave to all of them.
-std::optional<ErrorModel> recorded_error(const json& provenance) {
-  const json options = provenance.value("options", json::object());
-  if (options.value("method", "") != "lumitexel" || provenance.value("errors", "") != "given") return std::nullopt;
-  return ErrorModel(options.at("relative_error").get<double>(), options.at("error_floor").get<double>());
-}
 
 void check_session(const Model& model, const CalibratedSession& session, const Atlas& atlas) {
   const std::string fitted_to = fitted_session_key(model);
@@ -48,44 +40,23 @@ void turn_to_fitted(const Model& model, LumitexelSet& set) {
   }
 }
 
-// The lumitexels that the fit took light of other surfaces from.
-std::vector<bool> less_indirect(const Model& model, const LumitexelSet& set) {
-  std::vector<bool> wanted;
-  for (const LumitexelTile& tile : set.tiles) {
-    for (const std::uint32_t texel : tile.texel) wanted.push_back(model.indirect.data[std::size_t{2} * texel + kFoundShare] > 0.0f);
-  }
-  return wanted;
-}
-
-// Takes light of other surfaces, as the finished model sends it, out of the samples that the fit saw without it. What it took, as LumitexelTile::reflectance, all
-// tiles in a row; empty where the fit took none.
-std::vector<float> take_indirect(const Model& model, const CalibratedSession& session, LumitexelSet& set, Progress& progress) {
-  std::vector<float> taken;
-  if (model.indirect_bounces == 0) return taken;
-  progress.begin("light between surfaces", 1, "rounds");
-  IndirectOptions options;
-  options.bounces = model.indirect_bounces;
-  const IndirectLight light = indirect_light(session, set, less_indirect(model, set), model, last_stage(model), options);
-  for (std::size_t t = 0; t < set.tiles.size(); ++t) {
-    LumitexelTile& tile = set.tiles[t];
-    for (std::size_t k = 0; k < tile.reflectance.size(); ++k) {
-      tile.reflectance[k] -= light.reflectance[t][k];
-      tile.variance[k] += light.variance[t][k];
-    }
-    taken.insert(taken.end(), light.reflectance[t].begin(), light.reflectance[t].end());
-  }
-  progress.update(1);
-  return taken;
-}
-
 struct SampleRecord {
   ChannelValues predicted{};
   double weight = 0, scales_off = 0;  // weight: of the texel's least squares, mean of the channels
 };
 
+// Of the channels' own entries in the inverse covariance that a texel's least squares weigh the sample by (texel_system.h).
+double mean_precision(const ErrorModel& error, const Observation& sample, int channels, const ChannelValues& of_material) {
+  const ScaledResiduals scaled = scaled_residuals(error, sample, channels, of_material);
+  const ChannelMatrix whitening = error.whitening().size() > 0 ? error.whitening() : ChannelMatrix(ChannelMatrix::Identity(channels, channels));
+  double sum = 0.0;
+  for (Eigen::Index c = 0; c < channels; ++c) sum += whitening.col(c).squaredNorm() / std::pow(scaled.scale[static_cast<std::size_t>(c)], 2);
+  return sum / channels;
+}
+
 struct Predictor {
   const Model& model;
-  std::optional<ErrorModel> error;
+  std::optional<FitErrors> errors;
 
   SampleRecord operator()(std::uint32_t texel, const Observation& sample) const {
     const int x = static_cast<int>(texel) % model.width, y = static_cast<int>(texel) / model.width;
@@ -94,12 +65,10 @@ struct Predictor {
       record.predicted[static_cast<std::size_t>(c)] = sample.geometry.cos_i * evaluate_texel(model, FitStage::Normal, x, y, c, sample.geometry);
     }
     const int material = model.material[texel];
-    if (!error || material == Model::kNoMaterial) return record;
-    const ChannelValues of_material = predicted_reflectance(model.materials[static_cast<std::size_t>(material)].brdf, sample.geometry);
-    for (std::size_t c = 0; c < static_cast<std::size_t>(model.channels); ++c) {
-      record.weight += 1.0 / error->variance(of_material[c], static_cast<double>(sample.variance[c])) / model.channels;
-    }
-    record.scales_off = std::sqrt(sample_misfit(*error, sample, model.channels, record.predicted).squares / model.channels);
+    if (!errors || material == Model::kNoMaterial) return record;
+    const auto m = static_cast<std::size_t>(material);
+    record.weight = mean_precision(errors->weights[m], sample, model.channels, predicted_reflectance(model.materials[m].brdf, sample.geometry));
+    record.scales_off = std::sqrt(sample_misfit(errors->residuals[m], sample, model.channels, record.predicted).squares / model.channels);
     return record;
   }
 };
@@ -135,7 +104,7 @@ void append(const Observation& sample, const SampleRecord& record, const float* 
   view.reason.push_back(reason);
 }
 
-// Observations are in the order of lumitexels, then of views, but lack the samples that no fit may meet; `indirect` (of take_indirect) has them.
+// Observations are in the order of lumitexels, then of views, but lack the samples that no fit may meet; `indirect` (of take_light_of_fit) has them.
 void sort_by_view(const CalibratedSession& session, const Model& model, const Observations& observations,
                   const std::vector<SampleRecord>& samples, const std::vector<float>& indirect, LumitexelRecords& records) {
   const auto listed = listed_outliers(model.outliers_csv, model.width);
@@ -169,11 +138,13 @@ LumitexelRecords lumitexel_records(const Model& model, const CalibratedSession& 
   check_session(model, session, atlas);
   GatheredLumitexels gathered = gather_lumitexels(session, atlas, scene, progress);
   turn_to_fitted(model, gathered.set);
-  const std::vector<float> indirect = take_indirect(model, session, gathered.set, progress);
+  if (model.indirect_bounces > 0) progress.begin("light between surfaces", 1, "rounds");
+  const std::vector<float> indirect = take_light_of_fit(model, session, gathered.set);
+  if (model.indirect_bounces > 0) progress.update(1);
   const Observations observations = observe(session, gathered.set);
 
-  const Predictor predictor{model, recorded_error(provenance)};
-  LumitexelRecords records{model.channels, predictor.error.has_value(), {}, {}, gathered.used_views, {}};
+  const Predictor predictor{model, errors_of_fit(model)};
+  LumitexelRecords records{model.channels, predictor.errors.has_value(), {}, {}, gathered.used_views, {}};
   for (const LumitexelTile& tile : gathered.set.tiles) {
     records.texel.insert(records.texel.end(), tile.texel.begin(), tile.texel.end());
     records.position.insert(records.position.end(), tile.position.begin(), tile.position.end());

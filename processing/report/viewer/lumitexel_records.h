@@ -19,7 +19,7 @@ inline constexpr std::uint8_t kBelowFittedNormal = 9;
 struct ViewRecords {
   std::vector<std::uint8_t> verdict;        // of every lumitexel
   std::vector<float> measured, predicted;   // channels interleaved: r = f cos_i, 1/sr; as photographed, light from other surfaces of the object included
-  // Only where the fit's error model is on record (LumitexelRecords::weighed), else empty.
+  // Only where the fit's error models are on record (LumitexelRecords::weighed), else empty.
   std::vector<float> share;                 // of the sample in the least squares for its texel's weights; a lumitexel's shares sum to 1
   std::vector<float> scales_off;            // root mean square of the channels' residuals over the error model's scales
   std::vector<std::uint8_t> reason;         // 0, or 1 + OutlierReason where Model::outliers_csv lists the sample
@@ -34,10 +34,9 @@ struct LumitexelRecords {
   std::vector<ViewRecords> by_view;         // of each used view
 };
 
-// Gathers as fit_model does and predicts with all that the model holds, on its own normals. The share and the scales need errors that
-// were given to the fit: those that a fit estimates it does not keep. Where light between surfaces was taken out of the samples
-// (Model::indirect_bounces, Model::indirect), it is followed by paths again and is in `measured` and `predicted`; shares and scales are those of
-// samples without it, as in the fit. Throws BadInput if the model was not fitted to this session.
+// Gathers as fit_model does and predicts with all that the model holds, on its own normals. Shares and scales are by the fit's own error models
+// (fit_errors.h). Where light between surfaces was taken out of the samples, it is taken out once more (light_taken.h) and is in `measured` and
+// `predicted`; shares and scales are those of samples without it, as in the fit. Throws BadInput if the model was not fitted to this session.
 LumitexelRecords lumitexel_records(const Model& model, const CalibratedSession& session, Progress& progress);
 
 // Root mean square of the residuals over a texel's samples and channels, 1/sr, by atlas index; -1 where it has none.

@@ -1,5 +1,6 @@
 #include "processing/report/viewer/viewer_page.h"
 
+#include <algorithm>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -17,6 +18,7 @@ namespace {
 // In the order in which they are run: each may use what those before it defined.
 constexpr const char* kScripts[] = {"data.js",     "bvh.js", "textures.js", "sky.js", "renderer.js",
                                     "texel_table.js", "samples.js", "sample_table.js", "ui.js",  "main.js"};
+constexpr std::size_t kFewestSampleBytes = 100'000;
 constexpr const char* kShaders[] = {"brdf.glsl", "surface.glsl", "shade.glsl", "sky.glsl", "pixel.glsl"};
 
 void replace(std::string& text, const std::string& key, const std::string& value) {
@@ -38,6 +40,25 @@ std::string scripts() {
   return text;
 }
 
+std::size_t text_bytes() {
+  std::size_t sum = 0;
+  for (const PageFile* file = kPageFiles; file->name != nullptr; ++file) sum += std::strlen(file->text);
+  return sum;
+}
+
+// Adds what goes into the page beside `page_bytes` of others; k where every k-th lumitexel does, 0 for none.
+std::size_t add_samples(const ViewerSamples& samples, const Model& model, std::size_t page_bytes, nlohmann::json& document, PackedChunks& chunks) {
+  PackedChunks residual;
+  add_residual_chunk(samples.records, model, residual);
+  const std::size_t others = page_bytes + residual.total_bytes();
+  const std::size_t room = std::min(kMostSampleBytes, samples.most_page_bytes > others ? samples.most_page_bytes - others : 0);
+  if (room < kFewestSampleBytes) return 0;
+  chunks.append(std::move(residual));
+  const std::size_t every = add_samples_within(room, samples.records, model.mesh, chunks);
+  document["samples"] = viewer_samples_json(samples.records, samples.session, box_of(model.mesh).centre(), every);
+  return every;
+}
+
 std::string inline_json(const std::string& json) {
   std::string text = json;
   for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3) text.insert(at + 1, "\\");
@@ -54,6 +75,10 @@ std::string page_file(const std::string& name) {
 }
 
 ViewerPage viewer_page(const std::string& title, const Model& model, const ViewerSamples* samples, const Image* given_sky) {
+  if (model.mesh.triangles.size() > kMostViewerTriangles) {
+    throw BadInput("the model's mesh", std::to_string(model.mesh.triangles.size()) + " triangles",
+                   "at most " + std::to_string(kMostViewerTriangles) + " for the interactive view, whose page holds no larger numbers: fit to a coarser mesh");
+  }
   PackedChunks chunks;
   add_model_chunks(model, chunks);
   nlohmann::json document = viewer_model_json(model);
@@ -61,11 +86,7 @@ ViewerPage viewer_page(const std::string& title, const Model& model, const Viewe
   add_sky_chunk(sky, chunks);
   document["sky"] = viewer_sky_json(sky);
   std::size_t every = 0;
-  if (samples != nullptr) {
-    add_residual_chunk(samples->records, model, chunks);
-    every = add_samples_within(kMostSampleBytes, samples->records, model.mesh, chunks);
-    document["samples"] = viewer_samples_json(samples->records, samples->session, box_of(model.mesh).centre(), every);
-  }
+  if (samples != nullptr) every = add_samples(*samples, model, chunks.total_bytes() + document.dump().size() + text_bytes(), document, chunks);
   document["chunks"] = nlohmann::json::parse(chunks.directory_json());
 
   ViewerPage page{page_file("page.html"), chunks.bytes(), textured_texels(model).size(), every};

@@ -5,6 +5,7 @@
 // browser's largest texture (mostly 16384 a side). What is lost on the way: viewer_model.h; the shader works in single precision.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <string>
 
@@ -24,9 +25,16 @@ struct ViewerPage {
 struct ViewerSamples {
   const CalibratedSession& session;
   const LumitexelRecords& records;  // of the model and the session
+  // What the whole page may have with them: as many lumitexels go in as fit (every k-th), none if hardly any would. Samples alone never have more
+  // than kMostSampleBytes.
+  std::size_t most_page_bytes = std::numeric_limits<std::size_t>::max();
 };
 
-// samples: null for a page of the model alone. sky: of viewer_sky.h, at most kMostSkyWidth wide; null for the built-in one.
+// The page's hierarchy of boxes (page/bvh.js) has 8 times the number of a leaf's first triangle and their count in one single-precision number, which
+// holds whole numbers up to 2^24: of larger meshes it would miss triangles.
+inline constexpr std::size_t kMostViewerTriangles = std::size_t{1} << 21;
+
+// Throws BadInput where the mesh has more. samples: null for a page of the model alone. sky: of viewer_sky.h, at most kMostSkyWidth wide; null for the built-in one.
 ViewerPage viewer_page(const std::string& title, const Model& model, const ViewerSamples* samples = nullptr, const Image* sky = nullptr);
 
 }  // namespace lumitexel

@@ -12,7 +12,10 @@ namespace lumitexel {
 // Beyond this the section only says how to make the page: a report should still go by mail.
 inline constexpr std::size_t kMostViewerBytes = 16'000'000;
 
-// HTML.
+// What stands in its place for a mesh of so many triangles, more than kMostViewerTriangles.
+std::string viewer_left_out(std::size_t triangles);
+
+// HTML. Where the page has samples it says of how many surface points.
 std::string viewer_section(const ViewerPage& page, std::size_t most_bytes = kMostViewerBytes);
 
 }  // namespace lumitexel

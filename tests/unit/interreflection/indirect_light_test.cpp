@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "processing/fit/interreflection_stage.h"
+#include "tests/unit/bad_input_matcher.h"
 #include "tests/unit/interreflection/bowl.h"
 
 namespace lumitexel {
@@ -70,6 +71,15 @@ TEST(IndirectLight, IsFollowedOnlyWhereItIsWanted) {
   const IndirectLight light = indirect_light(bowl_session(), lumitexels, wanted, bowl_model(kAlbedo), FitStage::Projection, {1, 16});
   EXPECT_EQ(light.samples, 1u);
   for (std::size_t k = 0; k < light.reflectance[0].size(); ++k) EXPECT_EQ(light.reflectance[0][k] > 0.0f, k / 3 == 5) << k;
+}
+
+// Half of the paths go into each replicate: with an odd number means would be right and variances not.
+TEST(IndirectLight, RefusesPathsThatDoNotFillTwoReplicates) {
+  const LumitexelSet lumitexels = bowl_lumitexels(kAlbedo, 1);
+  const std::vector<bool> all(lumitexels.size(), true);
+  for (const int paths : {0, 1, 7, -2}) {
+    EXPECT_BAD_INPUT(indirect_light(bowl_session(), lumitexels, all, bowl_model(kAlbedo), FitStage::Projection, {1, paths}), "paths", std::to_string(paths), "even");
+  }
 }
 
 TEST(IndirectLight, HasTheSameBitsForAnyNumberOfThreads) {

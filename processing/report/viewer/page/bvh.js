@@ -24,7 +24,8 @@ class Box {
   cost() { return this.count === 0 ? 0 : halfArea(this.low, this.high) * this.count; }
 }
 
-// positions: xyz by vertex; corners: three vertices a triangle. Gives order (of the triangles, leaf by leaf) and nodes (8 floats each).
+// positions: xyz by vertex; corners: three vertices a triangle. Gives order (of the triangles, leaf by leaf) and nodes (8 floats each), which hold
+// the numbers of 2^21 triangles (kMostViewerTriangles in viewer_page.h).
 function buildHierarchy(positions, corners) {
   const count = corners.length / 3;
   const low = new Float32Array(3 * count), high = new Float32Array(3 * count), order = new Uint32Array(count);

@@ -43,7 +43,7 @@ function sampleTable({ texel, distance, looks }) {
   const indirect = page.indirect_bounces === 0 ? "" : "Measured and predicted hold the light that comes by way of the object's other surfaces, as the model sends it; the fit saw samples without it. ";
   const weights = page.samples.weighed
     ? "Scales: residual over the error model's. Weight: share in the least squares for the texel's weights. "
-    : "This fit estimated its errors from the samples and did not keep them, so weights are not known here. ";
+    : "This model was fitted by an earlier version, which did not keep the errors that it estimated, so weights are not known here: fit again to see them. ";
   return `<h2>Lumitexel at ${texel.join(", ")}${away}: ${taken.length} samples of ${looks.length} photographs</h2>` +
     `<table>${sampleHead()}${taken.map(usedRow).join("")}${rejectedRows(rejected)}</table>${unseenLine(looks, hidden)}${unseenLine(looks, outside)}` +
     `<p class="hint">Reflectance is f cos. Predicted by all that the model holds, angles to its normals. ${indirect}${weights}${thinned}</p>`;
