@@ -44,12 +44,13 @@ Brdf relearnt(const Brdf& richer, const Brdf& smaller, FitSamples samples, const
 
 }  // namespace
 
-PhotographMisfits misfits_of_left_out(const MaterialModel& smaller, const MaterialModel& richer, FitSamples samples, const MaterialFitOptions& options) {
+bool predicts_other_photographs(const MaterialModel& smaller, const MaterialModel& richer, FitSamples samples, const MaterialFitOptions& options) {
   const std::map<std::uint16_t, std::size_t> place = places(samples);
+  if (place.size() < 2) return true;
   std::vector<std::vector<FitSample>> photographs(place.size());
   for (const FitSample& sample : samples) photographs[place.at(sample.view)].push_back(sample);
   const ErrorModel& error = options.mean_fit ? *options.mean_fit : richer.error;
-  PhotographMisfits misfits{std::vector<double>(place.size()), std::vector<double>(place.size())};
+  std::vector<double> of_smaller(place.size()), of_richer(place.size());
   for (std::size_t fold = 0; fold < std::min(kPhotographFolds, place.size()); ++fold) {
     std::vector<FitSample> kept;
     for (const FitSample& sample : samples) {
@@ -57,17 +58,11 @@ PhotographMisfits misfits_of_left_out(const MaterialModel& smaller, const Materi
     }
     const Brdf plain = fitted_to(smaller.brdf, kept, error, options), more = relearnt(richer.brdf, plain, kept, error, options);
     for (std::size_t p = fold; p < place.size(); p += kPhotographFolds) {
-      misfits.of_smaller[p] = misfit(plain, photographs[p], error);
-      misfits.of_richer[p] = misfit(more, photographs[p], error);
+      of_smaller[p] = misfit(plain, photographs[p], error);
+      of_richer[p] = misfit(more, photographs[p], error);
     }
   }
-  return misfits;
-}
-
-bool predicts_other_photographs(const MaterialModel& smaller, const MaterialModel& richer, FitSamples samples, const MaterialFitOptions& options) {
-  if (places(samples).size() < 2) return true;
-  const PhotographMisfits misfits = misfits_of_left_out(smaller, richer, samples, options);
-  const PairedDifference gain = paired_difference(misfits.of_smaller, misfits.of_richer);
+  const PairedDifference gain = paired_difference(of_smaller, of_richer);
   return gain.sum > kStandardErrors * gain.sigma;  // false of what is no number
 }
 

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
 #include "processing/brdf/fit_material.h"
 
@@ -12,17 +11,9 @@ namespace lumitexel {
 
 inline constexpr std::size_t kPhotographFolds = 4;
 
-// Misfit of each photograph that has samples, in their order, under models that were fitted to others.
-struct PhotographMisfits {
-  std::vector<double> of_smaller, of_richer;
-};
-
 // Photographs are left out by turns, every fourth at a time, each once; both models are fitted to the others, the richer one's
-// further lobes sought anew, and compared by their misfit under the richer one's error model.
-PhotographMisfits misfits_of_left_out(const MaterialModel& smaller, const MaterialModel& richer, FitSamples samples, const MaterialFitOptions& options);
-
-// True if the richer one's misfits are less by more than one standard error over photographs, and where there are fewer than two photographs to ask.
-// A highlight in one photograph alone is refused.
+// further lobes sought anew, and compared by their misfit under the richer one's error model. True if the richer one's is less by more than
+// one standard error over photographs, and where there are fewer than two photographs to ask. A highlight in one photograph alone is refused.
 bool predicts_other_photographs(const MaterialModel& smaller, const MaterialModel& richer, FitSamples samples, const MaterialFitOptions& options);
 
 }  // namespace lumitexel

@@ -19,8 +19,7 @@ struct RayHit {
 
 class RayScene {
  public:
-  // instruction_set: of the processor, as Embree calls them ("avx2", "avx512"); empty: the widest that it has. Results are the same to the bits of
-  // what is hit and occluded, and to the rounding of a float in u, v and distance.
+  // instruction_set: of the processor, as Embree calls them ("avx2", "avx512"); empty: the widest that it has.
   explicit RayScene(const Mesh& mesh, const std::string& instruction_set = "");
   ~RayScene();
   RayScene(const RayScene&) = delete;
