@@ -126,7 +126,9 @@ void expect_equal(const std::optional<ErrorModel>& a, const std::optional<ErrorM
   EXPECT_EQ(a->outlier_scale, b->outlier_scale);
   EXPECT_EQ(a->independence, b->independence);
   ASSERT_EQ(a->whitening().size(), b->whitening().size());
-  if (a->whitening().size() > 0) EXPECT_LT((a->whitening() - b->whitening()).cwiseAbs().maxCoeff(), kRootOfAMatrix);
+  if (a->whitening().size() > 0) {
+    EXPECT_LT((a->whitening() - b->whitening()).cwiseAbs().maxCoeff(), kRootOfAMatrix);
+  }
   EXPECT_NEAR(a->log_determinant(), b->log_determinant(), kRootOfAMatrix);
 }
 
