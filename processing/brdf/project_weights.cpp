@@ -4,7 +4,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -37,55 +36,30 @@ BasisMatrix covariance_of(const BasisMatrix& matrix, bool rank_deficient) {
   return matrix.ldlt().solve(BasisMatrix::Identity(matrix.rows(), matrix.cols()));
 }
 
-// What is known of a texel's weights. matrix: the posterior's inverse covariance.
-class Posterior {
- public:
-  Posterior(const NnlsSolution& solution, BasisMatrix matrix) : weights_(solution.weights), free_(solution.free) {
-    for (int i = 0; i < static_cast<int>(matrix.rows()); ++i) {
-      if (is_free(i)) continue;
-      matrix.row(i).setZero();
-      matrix.col(i).setZero();
-      matrix(i, i) = 1.0;
-    }
-    covariance_ = covariance_of(matrix, solution.rank_deficient);
+// Posterior one-sigma of the prediction, pooled over the texel's own samples, relative to the prediction. matrix: the posterior's inverse
+// covariance.
+double relative_sigma(const TexelSystem& system, const NnlsSolution& solution, BasisMatrix matrix) {
+  for (int i = 0; i < static_cast<int>(matrix.rows()); ++i) {
+    if (solution.free >> i & 1u) continue;
+    matrix.row(i).setZero();
+    matrix.col(i).setZero();
+    matrix(i, i) = 1.0;
   }
-
-  // One-sigma of the predictions for all of these samples, relative to the predictions.
-  double relative_sigma(std::span<const SampleEquations> samples) const {
-    double variance = 0.0, square = 1e-30;
-    for (const SampleEquations& sample : samples) {
-      for (Eigen::Index c = 0; c < sample.whitened.rows(); ++c) {
-        BasisVector direction = sample.whitened.row(c).transpose();
-        const double predicted = direction.dot(weights_);
-        for (int i = 0; i < static_cast<int>(direction.size()); ++i) {
-          if (!is_free(i)) direction[i] = 0.0;
-        }
-        variance += direction.dot(covariance_ * direction);
-        square += predicted * predicted;
+  const BasisMatrix covariance = covariance_of(matrix, solution.rank_deficient);
+  double variance = 0.0, square = 1e-30;
+  for (const SampleEquations& sample : system.samples) {
+    for (Eigen::Index c = 0; c < sample.whitened.rows(); ++c) {
+      BasisVector direction = sample.whitened.row(c).transpose();
+      const double predicted = direction.dot(solution.weights);
+      for (int i = 0; i < static_cast<int>(direction.size()); ++i) {
+        if (!(solution.free >> i & 1u)) direction[i] = 0.0;
       }
+      variance += direction.dot(covariance * direction);
+      square += predicted * predicted;
     }
-    const double relative = std::sqrt(variance / square);
-    return std::isfinite(relative) ? relative : 1.0;  // nothing is known
   }
-
- private:
-  bool is_free(int i) const { return (free_ >> i & 1u) != 0; }
-
-  BasisVector weights_;
-  unsigned free_;
-  BasisMatrix covariance_;
-};
-
-bool misses_highlight(std::span<const Observation> samples, const TexelBasis& basis) {
-  return basis.glossy && std::none_of(samples.begin(), samples.end(), [&](const Observation& s) { return near_highlight(*basis.glossy, s.geometry); });
-}
-
-// Where bases cannot be told apart by the samples, nobody knows what they do elsewhere.
-double sigma_in_mirror_direction(const Posterior& posterior, bool rank_deficient, const TexelBasis& basis) {
-  if (rank_deficient) return 1.0;
-  Observation mirror;
-  mirror.geometry = kGlossGeometry;
-  return std::min(1.0, posterior.relative_sigma(texel_system({&mirror, 1}, basis.channels, basis.values, basis.error).samples));
+  const double relative = std::sqrt(variance / square);
+  return std::isfinite(relative) ? relative : 1.0;  // nothing is known
 }
 
 // What leaving samples out costs with one candidate.
@@ -140,10 +114,7 @@ TexelWeights project_texel(std::span<const Observation> samples, const TexelBasi
   for (std::size_t k = 0; k < result.weight.size(); ++k) {
     result.weight[k] = static_cast<float>(solution.weights[static_cast<Eigen::Index>(k)]);
   }
-  const Posterior posterior(solution, known);
-  double sigma = posterior.relative_sigma(system.samples);
-  if (misses_highlight(samples, basis)) sigma = std::max(sigma, sigma_in_mirror_direction(posterior, solution.rank_deficient, basis));
-  result.relative_sigma = static_cast<float>(sigma);
+  result.relative_sigma = static_cast<float>(relative_sigma(system, solution, known));
   return result;
 }
 

@@ -8,13 +8,11 @@
 // and projection returns the material.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "processing/brdf/basis_values.h"
 #include "processing/brdf/error_model.h"
-#include "processing/brdf/highlight.h"
 #include "processing/brdf/observations.h"
 #include "processing/brdf/texel_prior.h"
 #include "processing/brdf/texel_system.h"
@@ -23,26 +21,21 @@ namespace lumitexel {
 
 struct TexelWeights {
   std::vector<float> weight;     // of each basis, >= 0
-  // One-sigma of the predicted reflectance, relative: from the posterior, in which samples count as often as they err independently; the error model's
-  // own where nothing may vary. Pooled over the texel's own samples; where none of them is near the material's highlight (highlight.h) that of the
-  // mirror direction, if it is larger, at most 1: what no photograph saw is as uncertain as the prior leaves it.
-  float relative_sigma = 0;
+  float relative_sigma = 0;      // one-sigma of the predicted reflectance, relative: from the posterior, in which samples count
+                                 // as often as they err independently; the error model's own where nothing may vary
 };
 
 // What all texels of a material share. basis[0] is the material itself, or what principal function analysis made of it; samples are
 // weighted by the error model at the prediction of `material`, so that what is moved does not change the measure.
 struct TexelBasis {
   TexelBasis(const std::vector<Brdf>& basis, const Brdf& material, const ErrorModel& error_model, Precision precision = Precision::Double)
-      : channels(material.channels), values(basis, material, precision), prior(basis, material.channels), error(error_model) {
-    if (has_highlight(material)) glossy = material;
-  }
+      : channels(material.channels), values(basis, material, precision), prior(basis, material.channels), error(error_model) {}
   TexelBasis(const std::vector<Brdf>& basis, const ErrorModel& error_model) : TexelBasis(basis, basis[0], error_model) {}
 
   int channels;
   BasisValues values;
   PriorPrecision prior;
   ErrorModel error;
-  std::optional<Brdf> glossy{};  // the material, if it has a highlight
 };
 
 // Weights of one texel.

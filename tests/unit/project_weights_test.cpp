@@ -169,63 +169,6 @@ TEST(ProjectTexel, MoreSamplesMeanASmallerStatedUncertaintyAndItIsTrue) {
   EXPECT_LT(std::sqrt(real / stated), 2.0);
 }
 
-// A texel of the first of the two bases, without noise, seen away from its highlight by so many samples and in the mirror direction by others.
-Observations seen_from(int aside, int in_highlight) {
-  Observations observations;
-  observations.channels = 3;
-  for (int s = 0; s < aside + in_highlight; ++s) {
-    Observation sample;
-    // Light at 20 to 50 degrees; the viewer on the light's side, or in the mirror direction.
-    const double angle = 0.35 + 0.52 * s / std::max(1, aside + in_highlight - 1);
-    const Eigen::Vector3d wi(std::sin(angle), 0.0, std::cos(angle)), mirror(-wi.x(), 0.0, wi.z()), beside(std::sin(angle) * 0.6, 0.8 * std::sin(angle), std::cos(angle));
-    sample.geometry = lobe_geometry(Eigen::Vector3d::UnitZ(), wi, s < aside ? beside : mirror);
-    for (std::size_t c = 0; c < 3; ++c) sample.reflectance[c] = static_cast<float>(predicted_reflectance(two_bases()[0], static_cast<int>(c), sample.geometry));
-    observations.samples.push_back(sample);
-  }
-  observations.first.push_back(observations.samples.size());
-  return observations;
-}
-
-double sigma_of(const Observations& observations, const TexelPrior& prior) {
-  return static_cast<double>(project_texel(observations.of(0), TexelBasis(two_bases(), kError), prior).relative_sigma);
-}
-
-// With samples enough its own predictions are certain, of a highlight that none of them saw the prior says all there is to say.
-TEST(ProjectTexel, AnUnseenHighlightIsAsUncertainAsThePriorLeavesIt) {
-  ASSERT_TRUE(has_highlight(two_bases()[0]));
-  for (const double width : {0.1, 0.3}) {
-    const double missed = sigma_of(seen_from(12, 0), {0.8, width}), seen = sigma_of(seen_from(11, 1), {0.8, width});
-    EXPECT_GT(missed, 0.3 * width) << "two bases that share a diffuse part cannot move their gloss by all of the width";
-    EXPECT_LT(missed, 1.1 * width);
-    EXPECT_LT(seen, 0.05);
-    EXPECT_GT(missed, 1.5 * seen);
-  }
-  EXPECT_GT(sigma_of(seen_from(40, 0), {0.8, 0.3}), 0.9 * sigma_of(seen_from(12, 0), {0.8, 0.3})) << "more of the same do not help";
-}
-
-// What had no sigma stays within what the map can say.
-TEST(ProjectTexel, AnUnseenHighlightWithoutAPriorIsNotKnownAtAll) {
-  std::vector<Brdf> bases = two_bases();
-  bases[1] = bases[0];
-  for (Lobe& lobe : bases[1].lobes[0]) lobe.log_strength += 1.0;  // they differ in the highlight alone
-  const TexelBasis basis(bases, kError);
-  const Observations missed = seen_from(12, 0), seen = seen_from(11, 1);
-  EXPECT_GT(project_texel(missed.of(0), basis, {kInfinity, kInfinity}).relative_sigma, 0.3f);
-  EXPECT_LE(project_texel(missed.of(0), basis, {kInfinity, kInfinity}).relative_sigma, 1.0f);
-  EXPECT_LT(project_texel(seen.of(0), basis, {kInfinity, kInfinity}).relative_sigma, 0.1f);
-}
-
-TEST(ProjectTexel, AMatteMaterialHasNoHighlightToMiss) {
-  std::vector<Brdf> matte = two_bases();
-  for (Brdf& brdf : matte) {
-    for (Lobe& lobe : brdf.lobes[0]) lobe.log_strength -= 5.0;
-  }
-  const TexelBasis basis(matte, kError);
-  ASSERT_FALSE(basis.glossy);
-  const Observations observations = seen_from(12, 0);
-  EXPECT_LT(project_texel(observations.of(0), basis, {0.8, 0.3}).relative_sigma, 0.05f);
-}
-
 // How many of the first material's bases, the second material among them, texels with 5 % noise are given. They differ by 30 % in
 // brightness, and mix up to so much of the second material.
 std::size_t bases_given(double most_of_other, unsigned seed, int texels = 200, int samples = 8) {

@@ -169,7 +169,9 @@ TEST(LightOfFit, IsTheShareThatTheModelKeepsOfEveryLumitexel) {
         EXPECT_NEAR(added(k), added(first + (k - first) % 3), 1e-6 * static_cast<double>(after.variance[k])) << "their mean, by channel";
       }
       const auto share = static_cast<double>(model.indirect.data[std::size_t{2} * before.texel[i] + 1]);
-      if (share > 0.0) EXPECT_NEAR(taken / measured, share, 1e-5 * share + 1e-7);  // of floats
+      if (share > 0.0) {
+        EXPECT_NEAR(taken / measured, share, 1e-5 * share + 1e-7);  // of floats
+      }
       compared += share > 0.1;
     }
   }
