@@ -47,9 +47,10 @@ std::string viewer_of(const ReportSubject& subject, CommandContext& context) {
 }
 
 CommandResult report_command(const ReportSettings& settings, CommandContext& context) {
+  require_writable_folder("--page", settings.out);
   const Model model = model_given("MODEL", settings.model);
   const fs::path out = settings.out.empty() ? fs::path(settings.model) / "report.html" : fs::path(settings.out);
-  require_writable_folder("--page", out);  // before the work
+  require_writable_folder("--page", out);  // the usual place, too
   std::optional<CalibratedSession> session;
   std::optional<Evaluation> evaluation;
   CalibrationSummary calibration;

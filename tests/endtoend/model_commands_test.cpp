@@ -51,26 +51,6 @@ TEST(Mip, WithoutRoomTheEarlierLevelsStay) {
   EXPECT_TRUE(files_below(folder.path()) == before);
 }
 
-TEST(Mip, RefitsToTheModelsOwnSessionAndToNoOther) {
-  const SmallImport photographs;
-  const std::string session = imported(photographs, "session"), model = photographs.path("model").string();
-  const ProgramRun fit = run_program("fit " + session + " --out " + model + " --quality draft --materials 1");
-  ASSERT_EQ(fit.exit_code, 0) << fit.errors;
-  const ProgramRun mip = run_program("mip " + model + " --levels 1 --session " + session + " --json");
-  ASSERT_EQ(mip.exit_code, 0) << mip.errors;
-  EXPECT_EQ(mip.json().at("way"), "refitted");
-
-  photographs.replace("lights.csv", "0,1,-2", "0,1,-3");  // the same mesh, in other light
-  const std::string other = imported(photographs, "other");
-  const auto before = files_below(model);
-  const ProgramRun refused = run_program("mip " + model + " --session " + other);
-  EXPECT_EQ(refused.exit_code, 2);
-  for (const std::string& part : {"--session: " + other + " is not the session that " + model + " was fitted to", std::string("no --session, which averages")}) {
-    EXPECT_THAT(refused.errors, HasSubstr(part));
-  }
-  EXPECT_TRUE(files_below(model) == before);
-}
-
 TEST(Export, IsThereAsAWholeOrNotAtAll) {
   const TemporaryFolder folder;
   const std::string model = written_sphere(folder), out = (folder / "out").string();

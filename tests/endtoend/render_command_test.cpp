@@ -68,7 +68,7 @@ TEST_F(BouncedLight, IsInAPhotographsPictureUnlessToldOtherwise) {
 
 TEST_F(BouncedLight, IsMissedByNameInOtherPictures) {
   const std::string camera = "--camera \"0,0,-2;0,0,0;0,1,0;30;16x12\" --light 0,1,-2";
-  for (const std::string& other : {camera, photograph_ + " --splat", photograph_ + " --camera-only --light 0,1,-2"}) {
+  for (const std::string& other : {camera, photograph_ + " --splat"}) {
     const ProgramRun run = rendered(other);
     EXPECT_EQ(run.json().at("bounces"), 0) << other;
     EXPECT_THAT(run.errors, HasSubstr("--bounces 2")) << other;

@@ -78,38 +78,6 @@ TEST(LumitexelRecords, HaveTheFitsResidualAlsoWhereLightWasTakenOut) {
   EXPECT_NEAR(std::sqrt(squares / static_cast<double>(values)), reported, 1e-3 * reported);
 }
 
-std::size_t outlying(const LumitexelRecords& records) {
-  std::size_t sum = 0;
-  for (const ViewRecords& view : records.by_view) {
-    for (const float scales : view.scales_off) sum += static_cast<double>(scales) > kOutlierScales;
-  }
-  return sum;
-}
-
-void expect_the_fits_outliers(const FittedBowl& bowl, double tolerance) {
-  double reported = 0.0;
-  for (const json& count : bowl.provenance.at("outliers").at("count")) reported += count.get<double>();
-  ASSERT_TRUE(bowl.records.weighed);
-  EXPECT_GT(reported, 100.0) << "else this says nothing";
-  EXPECT_NEAR(static_cast<double>(outlying(bowl.records)), reported, tolerance * reported);
-}
-
-// Maps in single precision move hardly a sample across the border; light that is divided among a lumitexel's samples by another model some.
-TEST(LumitexelRecords, HaveAsManyOutliersAsTheFitCounted) {
-  expect_the_fits_outliers(on_fitted_normals(), 0.003);
-  expect_the_fits_outliers(on_mesh_normals(), 0.03);
-}
-
-// The paper's method weighs by errors of its own and tells outliers by the given ones.
-TEST(LumitexelRecords, HaveAsManyOutliersAsThePapersMethodCounted) {
-  const FittedBowl bowl(as_published(draft(ErrorSource::Auto, NormalChoice::Mesh)));
-  expect_the_fits_outliers(bowl, 0.03);
-  const auto errors = errors_of_fit(bowl.model);
-  ASSERT_TRUE(errors);
-  EXPECT_EQ(errors->weights[0].floor, 1.0);
-  EXPECT_EQ(errors->residuals[0].relative, 0.3);
-}
-
 // Errors under which what each sample counts is known: shares of the prediction alone, two channels going together.
 TEST(LumitexelRecords, SharesAreThoseOfTheLeastSquares) {
   Model model = on_fitted_normals().model;
