@@ -1,5 +1,6 @@
 #include "processing/model/basis_file.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
@@ -233,8 +234,10 @@ ErrorModel error_from(const Field& field, int channels) {
   error.independence = field["independence"].number(0.0, 1.0);
   const Field correlation = field["correlation"];
   if (correlation.is_null()) return error;
-  error.set_correlation(matrix_from(correlation, channels));
-  if (!error.whitening().allFinite() || !std::isfinite(error.log_determinant())) correlation.fail("no such matrix", "a positive definite one");
+  const ChannelMatrix matrix = matrix_from(correlation, channels);
+  const bool usable = matrix.isApprox(matrix.transpose()) && matrix.llt().info() == Eigen::Success;
+  if (!usable) correlation.fail("no such matrix", "a symmetric, positive definite one");
+  error.set_correlation(matrix);
   return error;
 }
 

@@ -16,8 +16,8 @@ namespace lumitexel {
 
 struct SmoothNormalOptions {
   NormalPrior prior;
-  int most_steps = 40;              // it stops earlier, when a step gains next to nothing
-  double largest_step_rad = 0.06;   // of one normal: half a lobe of exponent 100, beyond which slopes say little
+  int most_steps;                  // it stops earlier, when a step gains next to nothing
+  double largest_step_rad = 0.06;  // of one normal: half a lobe of exponent 100, beyond which slopes say little
 };
 
 // Every normal as the mesh has it, every texel its material's own BRDF: where the search starts.

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -80,6 +81,27 @@ TEST_P(FitModelRepeated, WritesTheSameBytesForAnyNumberOfThreads) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, FitModelRepeated, testing::Values("ours", "paper"), [](const auto& method) { return std::string(method.param); });
+
+// Two rounds: what was before normals is as one round leaves it, and the second starts from the mesh's normals with the first one's materials.
+TEST(FitModelNormalRounds, TheSecondHasTheMaterialsOfTheFirst) {
+  const TemporaryFolder folder;
+  const CalibratedSession session = painted_sphere(1.0, folder);
+  FitOptions options = quick(FitOptions::preset("standard"));
+  options.normals = NormalChoice::Fitted;
+  NoProgress progress;
+  const FittedModel once = fit_model(session, options, {}, progress);
+  options.normal_rounds = 2;
+  const FittedModel twice = fit_model(session, options, {}, progress);
+  const auto stages_of_second_round = [](const FittedModel& fitted) {
+    return std::count_if(fitted.summary.stages.begin(), fitted.summary.stages.end(), [](const StageCost& stage) { return stage.name.find("round 2") != std::string::npos; });
+  };
+  EXPECT_EQ(stages_of_second_round(once), 0);
+  EXPECT_GE(stages_of_second_round(twice), 2) << "normals, and materials on them";
+  ASSERT_TRUE(once.model.before_normals && twice.model.before_normals);
+  EXPECT_EQ(once.model.before_normals->weights.data, twice.model.before_normals->weights.data);
+  EXPECT_NE(once.model.normal.data, twice.model.normal.data);
+  EXPECT_LE(twice.summary.normal->rms, 1.1 * once.summary.normal->rms) << "of the same samples, whose noise it is";
+}
 
 void expect_near(const Brdf& brdf, const Brdf& other, double tolerance) {
   ASSERT_EQ(brdf.lobes.size(), other.lobes.size());

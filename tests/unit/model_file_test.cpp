@@ -321,7 +321,8 @@ TEST_F(DamagedModel, EveryWrongFieldIsNamed) {
       {"basis.json", "/materials/0/error/relative", -0.1, {"basis.json.materials[0].error.relative", "-0.1"}},
       {"basis.json", "/materials/0/error/freedom", 0, {"basis.json.materials[0].error.freedom"}},
       {"basis.json", "/materials/0/error/outlier_scale", 0.5, {"basis.json.materials[0].error.outlier_scale"}},
-      {"basis.json", "/materials/0/error/correlation/2", {1.0}, {"basis.json.materials[0].error.correlation[2]", "1 entries"}}};
+      {"basis.json", "/materials/0/error/correlation/2", {1.0}, {"basis.json.materials[0].error.correlation[2]", "1 entries"}},
+      {"basis.json", "/materials/0/error/correlation/0/0", -0.1, {"basis.json.materials[0].error.correlation", "positive definite"}}};
   for (const JsonDamage& damage : damages) {
     const std::string intact = read_whole_file(file(damage.file));
     edit_json(damage.file, damage.pointer, damage.value);

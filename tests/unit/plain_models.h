@@ -15,6 +15,16 @@ inline Brdf diffuse_brdf(double red, double green, double blue) {
   return brdf;
 }
 
+// The diffuse part with one GGX lobe, the same in three channels.
+inline Brdf with_ggx_lobe(Brdf brdf, double f0, double alpha) {
+  brdf.family = BrdfFamily::Ggx;
+  Lobe lobe;
+  lobe.log_strength = std::log(f0);
+  lobe.log_shape = 2.0 * std::log(alpha);
+  brdf.lobes.push_back({lobe, lobe, lobe});
+  return brdf;
+}
+
 // Maps of the given size: every texel of material 0, without normals (so the mesh's are used), one basis of weight 1.
 inline Model model_of(Mesh mesh, int width, int height, const Brdf& brdf) {
   Model model;

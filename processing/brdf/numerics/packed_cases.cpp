@@ -51,8 +51,10 @@ class Errors {
       const QuadSlopes wanted = reference_slopes(batch.brdf.family, batch.lobe.log_shape, batch.lobe.aim, as_stored(batch.geometries[i]));
       const bool told = !aims || batch.lobe.log_shape >= kSteepLogExponent || base_of(batch.lobe, wanted) >= kLeastBase;
       const bool value_told = told || batch.lobe.log_shape >= 0.0;
-      value_told ? see_value(batch, i, wanted, values[i]) : void(++values_excluded);
-      if (aims) told ? see_slopes(batch, wanted, by_shape[i], by_aim[i]) : void(++slopes_excluded);
+      if (value_told) see_value(batch, i, wanted, values[i]);
+      if (aims && told) see_slopes(batch, wanted, by_shape[i], by_aim[i]);
+      values_excluded += !value_told;
+      slopes_excluded += aims && !told;
     }
     see_widths(batch, values);
   }

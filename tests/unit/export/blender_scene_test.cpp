@@ -12,15 +12,7 @@
 namespace lumitexel {
 namespace {
 
-Brdf glossy() {
-  Brdf brdf = diffuse_brdf(0.12, 0.08, 0.04);
-  brdf.family = BrdfFamily::Ggx;
-  Lobe lobe;
-  lobe.log_strength = std::log(0.15);
-  lobe.log_shape = 2.0 * std::log(0.5);
-  brdf.lobes.push_back({lobe, lobe, lobe});
-  return brdf;
-}
+Brdf glossy() { return with_ggx_lobe(diffuse_brdf(0.12, 0.08, 0.04), 0.15, 0.5); }
 
 double psnr_in_blender_db(const Model& model) {
   const TemporaryFolder folder;

@@ -1,8 +1,6 @@
 // Models whose exports are less usual: highlights that differ from texel to texel, and surface that nobody saw.
 #pragma once
 
-#include <cmath>
-
 #include "tests/unit/plain_models.h"
 
 namespace lumitexel {
@@ -10,12 +8,7 @@ namespace lumitexel {
 // Two materials, matte and glossy with a lobe a channel, whose share grows along u.
 inline Model glossy_model() {
   Model model = with_own_normals(model_of(sphere_mesh(24, 12), 16, 8, diffuse_brdf(0.2, 0.1, 0.05)));
-  Brdf glossy = diffuse_brdf(0.05, 0.08, 0.02);
-  glossy.family = BrdfFamily::Ggx;
-  Lobe lobe;
-  lobe.log_strength = std::log(0.6);
-  lobe.log_shape = 2.0 * std::log(0.15);
-  glossy.lobes.push_back({lobe, lobe, lobe});
+  const Brdf glossy = with_ggx_lobe(diffuse_brdf(0.05, 0.08, 0.02), 0.6, 0.15);
   model.materials.push_back({glossy, {glossy}, {}});
   for (std::size_t t = 0; t < model.material.size(); ++t) {
     model.material[t] = t % 16 >= 8;

@@ -32,15 +32,21 @@ Model half_as_bright(const CalibratedSession& session) {
   return model;
 }
 
+// The cube photographed, its model, and the samples of the model's texels.
+struct Cube {
+  TemporaryFolder folder;
+  CalibratedSession session = cube_session(folder);
+  Model model = half_as_bright(session);
+  NoProgress quiet;
+  LumitexelSet fine = texel_lumitexels(model, session, quiet);
+};
+
 // Largest coordinate: on the cube's surface it is half the side.
 double distance_from_cube_m(const Eigen::Vector3d& point) { return std::abs(point.cwiseAbs().maxCoeff() - 0.5 * kSide_m); }
 
 TEST(TexelLumitexels, LieAtTheirTexelsOnTheSurfaceAndHoldItsReflectance) {
-  const TemporaryFolder folder;
-  const CalibratedSession session = cube_session(folder);
-  const Model model = half_as_bright(session);
-  NoProgress progress;
-  const LumitexelSet set = texel_lumitexels(model, session, progress);
+  const Cube cube;
+  const LumitexelSet& set = cube.fine;
   EXPECT_EQ(set.size(), static_cast<std::size_t>(kWidth * kHeight)) << "the layout covers the whole atlas";
   ASSERT_GT(set.samples(), set.size()) << "three of six faces are seen, by four views";
   for (const LumitexelTile& tile : set.tiles) {
@@ -53,7 +59,7 @@ TEST(TexelLumitexels, LieAtTheirTexelsOnTheSurfaceAndHoldItsReflectance) {
       tile.normal[i].cwiseAbs().maxCoeff(&axis);
       EXPECT_NEAR(tile.normal[i][axis] * tile.position[i][(axis + 1) % 3], kSide_m * ((column + 0.5) / 16.0 - 0.5), 1e-9);
       for (std::size_t s = tile.first_sample[i]; s < tile.first_sample[i + 1]; ++s) {
-        const View& view = session.views[tile.view[s]];
+        const View& view = cube.session.views[tile.view[s]];
         const double cos_i = tile.normal[i].dot(view.light.direction_from(tile.position[i]));
         // Two thirds of a percent: bilinear sampling of the photograph between pixel centres.
         EXPECT_NEAR(tile.reflectance[3 * s], kDiffuse * cos_i, 0.0067 * kDiffuse);
@@ -76,17 +82,13 @@ std::pair<double, double> reflected_share(const Model& level) {
 }
 
 TEST(RefittedLevel, FollowsThePhotographsWhereAveragedOnesFollowTheModel) {
-  const TemporaryFolder folder;
-  const CalibratedSession session = cube_session(folder);
-  const Model model = half_as_bright(session);
-  NoProgress progress;
-  const LumitexelSet fine = texel_lumitexels(model, session, progress);
+  const Cube cube;
   for (const int level : {1, 3}) {
-    const Model averaged = averaged_level(model, level);
+    const Model averaged = averaged_level(cube.model, level);
     EXPECT_NEAR(reflected_share(averaged).first, 0.5, 1e-6);
-    const Model refitted = refitted_level(model, averaged, fine, session, level);
+    const Model refitted = refitted_level(cube.model, averaged, cube.fine, cube.session, level);
     ASSERT_EQ(refitted.width, kWidth >> level);
-    EXPECT_EQ(refitted.mesh.texcoords, session.mesh.texcoords);
+    EXPECT_EQ(refitted.mesh.texcoords, cube.session.mesh.texcoords);
     const auto [least, most] = reflected_share(refitted);
     // One percent: the photographs' bilinear sampling, and a face's perspective within a texel.
     EXPECT_NEAR(least, 1.0, 0.01) << level;
