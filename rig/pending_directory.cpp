@@ -1,10 +1,7 @@
 #include "rig/pending_directory.h"
 
-#include <signal.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <charconv>
 #include <string>
 #include <system_error>
 
@@ -16,27 +13,6 @@ namespace lumitexel {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-// Whether `name` is `prefix` and the number of a process that is no more.
-bool is_left_over(const std::string& name, const std::string& prefix) {
-  if (!name.starts_with(prefix)) return false;
-  pid_t process = 0;
-  const char* const end = name.data() + name.size();
-  const auto [read, error] = std::from_chars(name.data() + prefix.size(), end, process);
-  return error == std::errc() && read == end && process > 0 && kill(process, 0) != 0 && errno == ESRCH;
-}
-
-void remove_left_overs(const fs::path& parent, const std::string& prefix) {
-  std::error_code ignored;
-  for (fs::directory_iterator entry(parent, ignored), end; !ignored && entry != end; entry.increment(ignored)) {
-    std::error_code kept;
-    if (is_left_over(entry->path().filename().string(), prefix)) fs::remove_all(entry->path(), kept);
-  }
-}
-
-}  // namespace
-
 PendingDirectory::PendingDirectory(const fs::path& target) : target_(fs::absolute(target).lexically_normal()) {
   if (target_.filename().empty()) target_ = target_.parent_path();  // "session/"
   const fs::path parent = target_.parent_path();
@@ -44,10 +20,8 @@ PendingDirectory::PendingDirectory(const fs::path& target) : target_(fs::absolut
   for (fs::path at = parent; !fs::exists(at, failure) && at != at.parent_path(); at = at.parent_path()) {
     made_parents_.push_back(at);
   }
-  const std::string prefix = "." + target_.filename().string() + ".partial-";
-  remove_left_overs(parent, prefix);
   // No other living process has our number: what is there under that name was left by one that was killed.
-  path_ = parent / (prefix + std::to_string(getpid()));
+  path_ = parent / ("." + target_.filename().string() + ".partial-" + std::to_string(getpid()));
   fs::remove_all(path_, failure);
   fs::create_directories(path_, failure);
   if (failure) throw Error(path_.string() + ": cannot be made: " + failure.message());

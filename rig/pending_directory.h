@@ -8,7 +8,7 @@ namespace lumitexel {
 
 // A new folder ".NAME.partial-PROCESS" beside `target`; gone again at the object's end, together with any parents that
 // were made to hold it, unless it was moved into place. What a killed process leaves is that hidden folder, never half
-// a target; whoever makes the next one for that target on the same machine removes it.
+// a target.
 class PendingDirectory {
  public:
   explicit PendingDirectory(const std::filesystem::path& target);  // throws Error if it cannot be made

@@ -1,10 +1,6 @@
 #include "rig/pending_directory.h"
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <cstdlib>
 
 #include "drivers/error.h"
 #include "rig/replace_directory.h"
@@ -47,30 +43,6 @@ TEST(PendingDirectory, WithoutThatEverythingStaysAsItWas) {
   { const PendingDirectory pending(folder / "levels"), deeper(folder / "a/b/c"); }
   EXPECT_EQ(names_in(folder / "levels"), std::vector<std::string>{"old"});
   EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"levels"});
-}
-
-// A process that ends without its destructors, as a killed one does; its folder's number is then nobody's.
-void begin_and_die(const fs::path& target) {
-  const pid_t child = fork();
-  if (child == 0) {
-    const PendingDirectory pending(target);
-    std::_Exit(0);
-  }
-  int status = 0;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-}
-
-TEST(PendingDirectory, RemovesWhatAKilledProcessLeftAndNothingElse) {
-  const TemporaryFolder folder;
-  begin_and_die(folder / "levels");
-  begin_and_die(folder / "other");
-  const std::string living = ".levels.partial-" + std::to_string(getppid());
-  for (const std::string& name : {living, std::string(".levels.partial-"), std::string(".levels.partial-12x")}) fs::create_directory(folder / name);
-  ASSERT_EQ(names_in(folder.path()).size(), 5u);
-  { const PendingDirectory pending(folder / "levels"); }
-  const std::vector<std::string> left = names_in(folder.path());
-  EXPECT_EQ(left.size(), 4u) << "the other target's, one of a living process, and two that only look alike";
-  EXPECT_TRUE(fs::exists(folder / living));
 }
 
 TEST(ReplaceDirectory, AFolderThatCannotBePutInPlaceLeavesTheOldOne) {
